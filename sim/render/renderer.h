@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <string>
+
+#include "sim/head/head.h"
+#include "sim/scenario/scenario.h"
+#include "sim/world/world.h"
+#include "slam/types/pose.h"
+
+namespace groundloop::sim {
+
+/// What the renderer is, for run.json and the preflight line.
+struct RendererInfo {
+  std::string backend;   ///< "OSMesa"
+  std::string renderer;  ///< GL_RENDERER, names llvmpipe, LLVM version and vector width
+  std::string version;   ///< GL_VERSION
+  int samples = 0;       ///< what was given, not what was asked for
+};
+
+/// Off-screen renderer with exact intrinsics (free principal point, no head-light). One OpenGL context, to be
+/// used by the thread that made it.
+class Renderer {
+ public:
+  Renderer(const World& world, int width_px, int height_px, const RenderChoice& choice);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// Pinhole camera of one image.
+  struct Camera {
+    double focal_px, cx_px, cy_px;
+    slam::Pose T_world_camera;  ///< x right, y down, z forward
+  };
+
+  /// Takes over the state's geometry; call once before the images of that state.
+  void update_scene(const mjData& data);
+  /// Renders to 8-bit grey (CV_8UC1, rows top-down).
+  void render_grey(const Camera& camera, cv::Mat& grey);
+  /// Renders to 8-bit BGR, for pictures.
+  void render_bgr(const Camera& camera, cv::Mat& bgr);
+  /// Renders z along the optical axis [m] (CV_32FC1); the far plane where there is nothing. Needs
+  /// `antialiasing: 0`, since MuJoCo resolves multisampled depth by picking a sample.
+  void render_depth(const Camera& camera, cv::Mat& depth_m);
+
+  RendererInfo info() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace groundloop::sim

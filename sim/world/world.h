@@ -1,0 +1,38 @@
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <memory>
+#include <string>
+
+#include "sim/scenario/scenario.h"
+
+namespace groundloop::sim {
+
+/// A world file and a robot file composed into one MuJoCo model. Constant after loading.
+/// The robot's root body is the body of the robot file that has a free joint; its frame is `body`
+/// (x forward, y left, z up, origin on the floor below the axle).
+class World {
+ public:
+  /// @throws InputError naming file, line and element (a missing texture, XML that MuJoCo rejects, no robot body)
+  static World load(const Scenario& scenario);
+  /// A world without a robot, for tests and previews.
+  static World load_file(const std::string& world_file);
+
+  const mjModel& model() const { return *model_; }
+  int robot_body() const { return robot_body_; }       ///< MuJoCo body id; -1 without a robot
+  bool is_robot_geom(int geom) const;                  ///< part of the robot's body tree
+
+  using ModelPtr = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
+  using DataPtr = std::unique_ptr<mjData, decltype(&mj_deleteData)>;
+  /// Fresh state: robot at the scenario's start pose, everything else as in the file.
+  DataPtr make_data() const;
+
+ private:
+  World(ModelPtr model, int robot_body, const StartPose& start);
+  ModelPtr model_;
+  int robot_body_;
+  StartPose start_;
+};
+
+}  // namespace groundloop::sim
