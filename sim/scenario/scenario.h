@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/scenario/metric_names.h"
 #include "slam/types/config.h"
 
 namespace groundloop::sim {
@@ -16,24 +17,47 @@ namespace groundloop::sim {
 struct StartPose {
   double x_m = 0;
   double y_m = 0;
-  double yaw_deg = 0;
+  double yaw_deg = 0;  ///< about z, 0 looks along x, positive turns left
+
+  int line = 0;  ///< in the scenario file, for messages; not part of the file
 
   template <class Archive>
   void visit(Archive& a) {
-    a("x_m", x_m);
-    a("y_m", y_m);
-    a("yaw_deg", yaw_deg, {.min = -360, .max = 360});
+    a("x_m", x_m, {.min = -1000, .max = 1000});
+    a("y_m", y_m, {.min = -1000, .max = 1000});
+    a("yaw_deg", yaw_deg, {.min = -360, .max = 360, .doc = "0 looks along x, positive turns left"});
+  }
+};
+
+/// How the wheel odometry errs (facts: UMBmark, Borenstein and Feng 1996). The simulated robot itself is
+/// exact; these ratios say by how much the odometry's idea of it is wrong.
+struct OdometryModel {
+  int counts_per_rev = 76600;  ///< encoder counts a wheel revolution
+  double diameter_ratio =
+      1.002;                  ///< E_d: actual right over left wheel diameter; odometry takes them as equal
+  double track_ratio = 1.02;  ///< E_b: actual over nominal track
+  double noise_m_per_sqrt_m = 0.005;  ///< standard deviation of a wheel's path after one metre
+
+  template <class Archive>
+  void visit(Archive& a) {
+    a("counts_per_rev", counts_per_rev, {.min = 1, .max = 1e8, .doc = "encoder counts a wheel revolution"});
+    a("diameter_ratio", diameter_ratio, {.min = 0.5, .max = 2, .doc = "E_d: right over left wheel diameter"});
+    a("track_ratio", track_ratio, {.min = 0.5, .max = 2, .doc = "E_b: actual over nominal track"});
+    a("noise_m_per_sqrt_m", noise_m_per_sqrt_m,
+      {.min = 0, .max = 1, .doc = "standard deviation of a wheel's path after one metre"});
   }
 };
 
 struct RobotChoice {
   std::string model;  ///< MJCF file, relative to the scenario file
   StartPose start;
+  OdometryModel odometry;
 
   template <class Archive>
   void visit(Archive& a) {
-    a("model", model, {.required = true, .doc = "MJCF file of the robot"});
-    a("start", start);
+    a("model", model, {.required = true, .doc = "MJCF file of the robot, relative to this file"});
+    a("start", start, {.doc = "where the robot starts, in the world frame"});
+    a("odometry", odometry, {.doc = "errors of the wheel odometry"});
   }
 };
 
@@ -42,7 +66,7 @@ struct HeadChoice {
 
   template <class Archive>
   void visit(Archive& a) {
-    a("model", model, {.required = true, .doc = "YAML file of the stereo head"});
+    a("model", model, {.required = true, .doc = "YAML file of the stereo head, relative to this file"});
   }
 };
 
@@ -52,8 +76,8 @@ struct ArcSegment {
 
   template <class Archive>
   void visit(Archive& a) {
-    a("radius_m", radius_m, {.min = 0, .max = 1000, .required = true});
-    a("angle_deg", angle_deg, {.min = -36000, .max = 36000, .required = true});
+    a("radius_m", radius_m, {.min = 0, .max = 1000, .required = true, .doc = "0 turns on the spot"});
+    a("angle_deg", angle_deg, {.min = -36000, .max = 36000, .required = true, .doc = "positive turns left"});
   }
 };
 
@@ -73,12 +97,15 @@ struct Segment {
   std::optional<double> stop_s;
   std::optional<LookSegment> look;
 
+  int line = 0;  ///< in the scenario file, for messages; not part of the file
+  static constexpr bool kExactlyOneMember = true;
+
   template <class Archive>
   void visit(Archive& a) {
-    a("straight_m", straight_m, {.min = -1000, .max = 1000});
-    a("arc", arc);
-    a("stop_s", stop_s, {.min = 0, .max = 3600});
-    a("look", look);
+    a("straight_m", straight_m, {.min = -1000, .max = 1000, .doc = "negative drives backwards"});
+    a("arc", arc, {.doc = "circle driven forwards"});
+    a("stop_s", stop_s, {.min = 0, .max = 3600, .doc = "stand still"});
+    a("look", look, {.doc = "turn the head (needs a robot with a pan-tilt head; not supported yet)"});
   }
   void check(ConfigReader& reader) const;
 };
@@ -93,12 +120,19 @@ struct Plan {
 
   template <class Archive>
   void visit(Archive& a) {
-    a("feedback", feedback);
+    a("feedback", feedback, {.doc = "who steers: the plan alone (open loop), or correction by a pose"});
     a("speed_mps", speed_mps, {.min = 0.01, .max = 1.2, .required = true});
-    a("turn_rate_limit_degps", turn_rate_limit_degps, {.min = 1, .max = 300});
-    a("segments", segments, {.required = true});
+    a("turn_rate_limit_degps", turn_rate_limit_degps,
+      {.min = 1, .max = 300, .doc = "arcs slow down so that the heading never turns faster"});
+    a("segments", segments, {.required = true, .doc = "driven one after the other"});
   }
   void check(ConfigReader& reader) const;
+};
+
+/// An entry of `faults:`. None is supported yet, so the list must be empty.
+struct Fault {
+  template <class Archive>
+  void visit(Archive&) {}
 };
 
 /// How images are made. Every combination gives the same bytes in every run.
@@ -109,20 +143,24 @@ struct RenderChoice {
 
   template <class Archive>
   void visit(Archive& a) {
-    a("antialiasing", antialiasing, {.min = 0, .max = 4});
+    a("antialiasing", antialiasing, {.min = 0, .max = 4, .doc = "samples a pixel: 0, 2 or 4"});
     a("reflections", reflections);
     a("shadows", shadows);
   }
+  void check(ConfigReader& reader) const;
 };
 
 struct SlamChoice {
   std::string preset = "default";
   std::map<std::string, std::string> set;  ///< dotted option -> value, applied on top of the preset
 
+  int preset_line = 0;                   ///< in the scenario file, for messages; 0 from a default or `--set`
+  std::map<std::string, int> set_lines;  ///< option -> its line, likewise
+
   template <class Archive>
   void visit(Archive& a) {
-    a("preset", preset);
-    a("set", set);
+    a("preset", preset, {.doc = "paper (the faithful method) or default (the best this project has)"});
+    a("set", set, {.doc = "dotted options of the core and their values, on top of the preset"});
   }
 };
 
@@ -142,6 +180,18 @@ struct Expectation {
 struct Expectations {
   std::string outcome = "tracked";  ///< "tracked" or "lost"
   std::map<std::string, Expectation> metrics;
+
+  template <class Archive>
+  void visit(Archive& a) {
+    a("outcome", outcome, {.doc = "tracked, or lost for a run that must fail"});
+    for (const char* name : kMetricNames) {
+      const auto found = metrics.find(name);
+      auto bounds = found == metrics.end() ? std::nullopt : std::optional<Expectation>(found->second);
+      a(name, bounds);
+      if (bounds) metrics[name] = *bounds;
+    }
+  }
+  void check(ConfigReader& reader) const;
 };
 
 /// One scenario file, resolved: model paths are absolute.
@@ -153,22 +203,45 @@ struct Scenario {
   RobotChoice robot;
   HeadChoice head;
   Plan plan;
+  std::vector<Fault> faults;
   RenderChoice render;
   SlamChoice slam;
   uint64_t seed = 1;
   Expectations expect;
 
   std::string file;  ///< where it was read from; not part of the file
+
+  template <class Archive>
+  void visit(Archive& a) {
+    a("format", format, {.required = true, .doc = "always 1"});
+    a("name", name,
+      {.required = true, .doc = "letters, digits, dot, dash, underscore: it names the run folder"});
+    a("summary", summary, {.doc = "one line for lists and reports"});
+    a("world", world, {.required = true, .doc = "MJCF file of the scene, relative to this file"});
+    a("robot", robot, {.required = true});
+    a("head", head, {.required = true});
+    a("plan", plan, {.required = true});
+    a("faults", faults, {.doc = "must be empty: faults are not supported yet"});
+    a("render", render, {.doc = "how images are made"});
+    a("slam", slam);
+    a("seed", seed, {.doc = "of every noise"});
+    a("expect", expect, {.doc = "bounds of metrics: what must come out"});
+  }
+  void check(ConfigReader& reader) const;
 };
 
-/// Key and value of a `--set key=value` option.
+/// Key and value of a `--set key=value` option: a dotted key of the scenario (plan.speed_mps, seed,
+/// expect.map.f1.min, slam.preset), or `slam.` and a dotted option of the core (slam.tracking.max_features).
 struct Override {
   std::string key;
   std::string value;
 };
 
 /// Defaults, then the file, then the overrides. Paths become absolute, relative to the scenario file.
-/// @throws InputError with every problem found: unknown keys, wrong types, ranges, missing files.
+/// Options of the core (`slam:`) are passed on unchecked: who knows the core checks them.
+/// @throws InputError with every problem found: unknown keys, wrong types, ranges, missing files. Problems of
+/// an
+///         override name the file "--set".
 Scenario load_scenario(const std::string& file, const std::vector<Override>& overrides = {});
 
 /// The resolved scenario as YAML that load_scenario() accepts again.

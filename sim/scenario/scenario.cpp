@@ -1,0 +1,198 @@
+#include "sim/scenario/scenario.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace groundloop::sim {
+namespace {
+
+constexpr const char* kCommandLine = "--set";
+
+int line_of(const YAML::Node& node) {
+  return node.IsDefined() && !node.Mark().is_null() ? node.Mark().line + 1 : 0;
+}
+
+/// Faults come with a later version; each one is refused by name, and the list then reads as empty.
+void refuse_faults(YAML::Node& root, const std::string& file, std::vector<Problem>& problems) {
+  if (!root.IsMap() || !root["faults"].IsDefined() || !root["faults"].IsSequence()) return;
+  for (size_t i = 0; i < root["faults"].size(); ++i) {
+    problems.push_back({file, line_of(root["faults"][i]), fmt::format("faults[{}]", i), "a fault",
+                        "an empty list: faults are not supported yet"});
+  }
+  root["faults"] = YAML::Node(YAML::NodeType::Sequence);
+}
+
+/// Lines that messages need after loading.
+void remember_lines(const YAML::Node& root, Scenario& scenario) {
+  if (const YAML::Node start = root["robot"]["start"]; start.IsDefined()) {
+    scenario.robot.start.line = line_of(start);
+  }
+  const YAML::Node segments = root["plan"]["segments"];
+  for (size_t i = 0; i < scenario.plan.segments.size(); ++i) {
+    scenario.plan.segments[i].line = line_of(segments[i]);
+  }
+  const YAML::Node slam = root["slam"];
+  if (!slam.IsDefined()) return;
+  scenario.slam.preset_line = slam["preset"].IsDefined() ? line_of(slam["preset"]) : 0;
+  if (!slam["set"].IsDefined()) return;
+  for (const auto& entry : slam["set"]) {
+    scenario.slam.set_lines[entry.first.as<std::string>()] = line_of(entry.first);
+  }
+}
+
+bool starts_with(const std::string& text, const std::string& head) { return text.rfind(head, 0) == 0; }
+
+/// Scalars stay as typed; lists and maps ([..], {..}) are parsed.
+YAML::Node value_node(const std::string& value) {
+  const bool nested = !value.empty() && (value.front() == '[' || value.front() == '{');
+  return nested ? YAML::Load(value) : YAML::Node(value);
+}
+
+/// A metric's name holds dots of its own: expect.trajectory.ate_rmse_m.max is {expect: {<metric>: {max:
+/// ..}}}.
+YAML::Node expectation_node(const std::string& key, const YAML::Node& value) {
+  YAML::Node inner = value;
+  std::string metric = key;
+  const size_t dot = key.rfind('.');
+  const std::string last = dot == std::string::npos ? "" : key.substr(dot + 1);
+  if (last == "min" || last == "max") {
+    inner = YAML::Node(YAML::NodeType::Map);
+    inner[last] = value;
+    metric = key.substr(0, dot);
+  }
+  YAML::Node expect(YAML::NodeType::Map), root(YAML::NodeType::Map);
+  expect[metric] = inner;
+  root["expect"] = expect;
+  return root;
+}
+
+void set_slam_option(Scenario& scenario, const std::string& option, const std::string& value) {
+  scenario.slam.set[option] = value;
+  scenario.slam.set_lines[option] = 0;
+}
+
+void apply_override(const Override& override_, Scenario& scenario, std::vector<Problem>& problems) {
+  const std::string& key = override_.key;
+  if (key == "slam.preset") scenario.slam.preset_line = 0;
+  if (key != "slam.preset" && key != "slam.set") {
+    for (const char* prefix : {"slam.set.", "slam."}) {
+      if (starts_with(key, prefix)) {
+        return set_slam_option(scenario, key.substr(std::string(prefix).size()), override_.value);
+      }
+    }
+  }
+  const size_t first_own = problems.size();
+  try {
+    YAML::Node value = value_node(override_.value);
+    YAML::Node root =
+        starts_with(key, "expect.") ? expectation_node(key.substr(7), value) : nested_node(key, value);
+    refuse_faults(root, kCommandLine, problems);
+    ConfigReader reader(root, kCommandLine, "", &problems);
+    reader.set_overlay(true);
+    scenario.visit(reader);
+    reader.finish();
+  } catch (const YAML::Exception& e) {
+    problems.push_back({kCommandLine, 0, key, override_.value, "valid YAML: " + e.msg});
+  }
+  for (size_t i = first_own; i < problems.size(); ++i) problems[i].line = 0;
+}
+
+/// Makes a path absolute, relative to the scenario's folder; it must be an existing file.
+void resolve(std::string& path, const std::string& key, const YAML::Node& node, const Scenario& scenario,
+             const std::vector<Override>& overrides, const std::string& wanted,
+             std::vector<Problem>& problems) {
+  namespace fs = std::filesystem;
+  if (path.empty()) return;  // reported as missing already
+  const fs::path folder = fs::absolute(scenario.file).parent_path();
+  const fs::path resolved = (folder / path).lexically_normal();
+  std::error_code error;
+  if (!fs::is_regular_file(resolved, error)) {
+    const bool typed =
+        std::any_of(overrides.begin(), overrides.end(), [&](const Override& o) { return o.key == key; });
+    const std::string file = typed ? kCommandLine : scenario.file;
+    problems.push_back({file, typed ? 0 : line_of(node), key, path,
+                        fmt::format("{} that exists (looked for {})", wanted, resolved.string())});
+  }
+  path = resolved.string();
+}
+
+void remove_repeated(std::vector<Problem>& problems) {
+  std::vector<Problem> kept;
+  for (Problem& problem : problems) {
+    const bool seen = std::any_of(kept.begin(), kept.end(), [&](const Problem& other) {
+      return other.key == problem.key && other.wanted == problem.wanted && other.value == problem.value;
+    });
+    if (!seen) kept.push_back(std::move(problem));
+  }
+  problems = std::move(kept);
+}
+
+}  // namespace
+
+void Segment::check(ConfigReader& reader) const {
+  const int members = straight_m.has_value() + arc.has_value() + stop_s.has_value() + look.has_value();
+  if (members != 1) reader.problem("", "exactly one of: straight_m, arc, stop_s, look");
+  if (look) reader.problem("look", "no look segment: none of the robots has a pan-tilt head yet");
+}
+
+void Plan::check(ConfigReader& reader) const {
+  if (reader.has("segments") && segments.empty()) reader.problem("segments", "at least one segment");
+  if (feedback == Feedback::kSlam) {
+    reader.problem("feedback", "one of: plan, odometry, truth (steering by SLAM is not supported yet)");
+  }
+}
+
+void RenderChoice::check(ConfigReader& reader) const {
+  if (antialiasing != 0 && antialiasing != 2 && antialiasing != 4)
+    reader.problem("antialiasing", "one of: 0, 2, 4");
+}
+
+void Expectation::check(ConfigReader& reader) const {
+  if (!min && !max) reader.problem("", "bounds: min and/or max");
+  if (min && max && *min > *max) reader.problem("", fmt::format("min ({}) not above max ({})", *min, *max));
+}
+
+void Expectations::check(ConfigReader& reader) const {
+  if (outcome != "tracked" && outcome != "lost") reader.problem("outcome", "one of: tracked, lost");
+}
+
+void Scenario::check(ConfigReader& reader) const {
+  if (reader.has("format") && format != 1) reader.problem("format", "1, the only format this version reads");
+  const auto usable = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == '.';
+  };
+  if (reader.has("name") &&
+      (!std::all_of(name.begin(), name.end(), usable) || name.empty() || name.front() == '.')) {
+    reader.problem("name", "letters, digits, dots, dashes and underscores: it names the run folder");
+  }
+}
+
+Scenario load_scenario(const std::string& file, const std::vector<Override>& overrides) {
+  YAML::Node root = load_yaml_file(file);
+  std::vector<Problem> problems;
+  Scenario scenario;
+  scenario.file = file;
+
+  // the file; a document that is no map has nothing else to report
+  refuse_faults(root, file, problems);
+  read_config(root, file, scenario, problems);
+  if (!root.IsMap()) throw InputError(problems);
+  if (problems.empty()) remember_lines(root, scenario);
+
+  for (const Override& override_ : overrides) apply_override(override_, scenario, problems);
+
+  resolve(scenario.world, "world", root["world"], scenario, overrides, "an MJCF file", problems);
+  resolve(scenario.robot.model, "robot.model", root["robot"]["model"], scenario, overrides, "an MJCF file",
+          problems);
+  resolve(scenario.head.model, "head.model", root["head"]["model"], scenario, overrides, "a head's YAML file",
+          problems);
+  remove_repeated(problems);
+  if (!problems.empty()) throw InputError(problems);
+  return scenario;
+}
+
+std::string to_yaml(const Scenario& scenario) { return groundloop::to_yaml<Scenario>(scenario); }
+
+}  // namespace groundloop::sim
