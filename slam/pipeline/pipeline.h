@@ -18,15 +18,16 @@ struct KeyFrameRecord {
   int64_t stamp_ns = 0;
   int segment = 0;
   Pose T_map_left = Pose::Identity();
-  Matrix6d covariance = Matrix6d::Zero();  ///< of the motion from the key frame before, twist in its left camera
+  Matrix6d covariance =
+      Matrix6d::Zero();  ///< of the motion from the key frame before, twist in its left camera
 };
 
 /// One point of the cloud.
 struct CloudPoint {
   Eigen::Vector3d p_map = Eigen::Vector3d::Zero();
-  float sigma_m = 0;         ///< standard deviation along its ray
+  float sigma_m = 0;  ///< standard deviation along its ray
   uint8_t grey = 0;
-  int key_frame = 0;         ///< index into key_frames()
+  int key_frame = 0;  ///< index into key_frames()
 };
 
 /// The SLAM core: stereo pairs in, pose of each and a map out. Knows nothing of where the pairs come from.

@@ -1,0 +1,277 @@
+#include "slam/pipeline/pipeline.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "slam/features/detector.h"
+#include "slam/pipeline/stage_clock.h"
+#include "slam/pipeline/state_hash.h"
+#include "slam/registration/registration.h"
+#include "slam/stereo/disparity.h"
+#include "slam/stereo/matcher.h"
+#include "slam/tracking/tracker.h"
+#include "slam/types/counter_random.h"
+#include "slam/types/stereo_uncertainty.h"
+
+namespace groundloop::slam {
+
+struct Pipeline::Impl {
+  Impl(const StereoRig& stereo_rig, const SlamOptions& slam_options)
+      : rig(stereo_rig),
+        options(slam_options),
+        detector(options.detection),
+        dense(options.disparity),
+        matcher(rig, options.stereo, options.klt),
+        tracker(rig, options.tracking, options.klt, matcher),
+        registration(rig, options.registration) {}
+
+  void process(const StereoFrame& frame, FrameResult& result);
+  void track_frame(const StereoFrame& frame, StageClock& clock, FrameResult& result);
+  void register_frame(uint64_t seed, const Pose& T_kf_predicted);
+  void lose(const StereoFrame& frame, StageClock& clock, FrameResult& result);
+  void start_segment(const StereoFrame& frame, StageClock& clock, FrameResult& result);
+  void make_key_frame(const StereoFrame& frame, StageClock& clock, FrameResult& result);
+  void reconstruct();
+  void add_features(const StereoFrame& frame, StageClock& clock);
+  bool wants_key_frame(const FrameResult& result) const;
+  void record(const StereoFrame& frame, FrameResult& result);
+  Pose predicted_T_kf_left(const StereoFrame& frame) const;
+  void check(const StereoFrame& frame) const;
+
+  const StereoRig rig;
+  const SlamOptions options;
+  Detector detector;
+  DenseDisparity dense;
+  StereoMatcher matcher;
+  Tracker tracker;
+  Registration registration;
+
+  ImagePyramid left, right;
+  std::vector<PointPair> pairs;
+  std::vector<size_t> pair_feature;  ///< index into tracker.features(), per pair
+  RegistrationResult registered;
+  std::vector<Eigen::Vector2f> occupied;
+
+  bool started = false;
+  int segment = 0;
+  int frames_lost = 0;
+  Pose T_map_kf = Pose::Identity();
+  Pose T_kf_left = Pose::Identity();        ///< last frame in the last key frame
+  Pose T_previous_left = Pose::Identity();  ///< last motion, for constant velocity
+  int64_t kf_frame = 0;
+  size_t kf_features = 0;  ///< reconstructed at the last key frame
+  std::vector<KeyFrameRecord> key_frames;
+  std::vector<CloudPoint> cloud;
+  Trajectory trajectory;
+};
+
+Pipeline::Pipeline(const StereoRig& rig, const SlamOptions& options)
+    : impl_(std::make_unique<Impl>(rig, options)) {}
+Pipeline::~Pipeline() = default;
+
+FrameResult Pipeline::process(const StereoFrame& frame) {
+  FrameResult result;
+  impl_->process(frame, result);
+  return result;
+}
+
+void Pipeline::finish() {}
+const Trajectory& Pipeline::trajectory() const { return impl_->trajectory; }
+const std::vector<KeyFrameRecord>& Pipeline::key_frames() const { return impl_->key_frames; }
+std::vector<CloudPoint> Pipeline::cloud() const { return impl_->cloud; }
+const cv::Mat& Pipeline::last_disparity() const { return impl_->dense.half_resolution(); }
+const SlamOptions& Pipeline::options() const { return impl_->options; }
+
+/// One stereo pair, in the order of the paper's section 2.
+void Pipeline::Impl::process(const StereoFrame& frame, FrameResult& result) {
+  check(frame);
+  result.index = frame.index;
+  result.stamp_ns = frame.stamp_ns;
+  StageClock clock(result);
+
+  left.build(frame.left, options.klt.levels);
+  right.build(frame.right, options.klt.levels);
+  clock.lap(Stage::kPyramid);
+
+  if (!started) {
+    start_segment(frame, clock, result);
+  } else {
+    track_frame(frame, clock, result);
+    if (result.status == TrackingStatus::kLost) {
+      lose(frame, clock, result);
+    } else if (wants_key_frame(result)) {
+      make_key_frame(frame, clock, result);
+    }
+  }
+  record(frame, result);
+}
+
+/// Tracks the features of the last key frame and registers their new reconstruction with the old one.
+void Pipeline::Impl::track_frame(const StereoFrame& frame, StageClock& clock, FrameResult& result) {
+  const Pose T_kf_predicted = predicted_T_kf_left(frame);
+  tracker.track(left, right, T_kf_left, T_kf_predicted);
+  clock.lap(Stage::kTracking);
+  register_frame(static_cast<uint64_t>(frame.index), T_kf_predicted);
+  clock.lap(Stage::kRegistration);
+
+  // Where the motion was far from the plan, features were looked for in the wrong place: look again.
+  if (registered.usable && registered.inliers < static_cast<int>(0.7 * static_cast<double>(kf_features))) {
+    tracker.track_again(left, right, registered.T_from_to);
+    clock.lap(Stage::kTracking);
+    register_frame(static_cast<uint64_t>(frame.index), registered.T_from_to);
+    clock.lap(Stage::kRegistration);
+  }
+
+  result.features_tracked = static_cast<int>(pairs.size());
+  result.inliers = registered.inliers;
+  result.residual_px = registered.residual_px;
+  result.covariance = registered.covariance;
+  if (registered.usable) {
+    result.status = TrackingStatus::kTracking;
+    T_previous_left = T_kf_left.inverse() * registered.T_from_to;
+    T_kf_left = registered.T_from_to;
+    frames_lost = 0;
+  } else {
+    result.status = TrackingStatus::kLost;
+    result.message = registered.message;
+    T_kf_left = T_kf_predicted;
+  }
+}
+
+void Pipeline::Impl::register_frame(uint64_t seed, const Pose& T_kf_predicted) {
+  pairs.clear();
+  pair_feature.clear();
+  std::vector<Feature>& features = tracker.features();
+  for (size_t i = 0; i < features.size(); ++i) {
+    features[i].is_inlier = false;
+    if (!features[i].in_right) continue;
+    pairs.push_back({features[i].p_kf, features[i].covariance_kf,
+                     optimal_measurement(features[i].left.uv_px, features[i].right.uv_px)});
+    pair_feature.push_back(i);
+  }
+  registration.align(pairs, T_kf_predicted, mix_bits(options.seed) ^ seed, registered);
+  for (size_t k = 0; k < pairs.size(); ++k) features[pair_feature[k]].is_inlier = registered.inlier[k] != 0;
+}
+
+/// Without a pose the plan is believed for some frames; then everything starts anew where the plan says.
+void Pipeline::Impl::lose(const StereoFrame& frame, StageClock& clock, FrameResult& result) {
+  if (++frames_lost <= options.tracking.hold_lost_frames) return;
+  const std::string why = result.message;
+  start_segment(frame, clock, result);
+  result.status = TrackingStatus::kLost;
+  result.message = why;
+}
+
+void Pipeline::Impl::start_segment(const StereoFrame& frame, StageClock& clock, FrameResult& result) {
+  const bool first = trajectory.empty();
+  T_map_kf = first ? rig.T_body_left : T_map_kf * T_kf_left;
+  T_kf_left.setIdentity();
+  tracker.clear();
+  add_features(frame, clock);
+  kf_frame = frame.index;
+  kf_features = tracker.features().size();
+  if (static_cast<int>(kf_features) < options.registration.min_inliers) {
+    tracker.clear();
+    started = false;
+    result.status = TrackingStatus::kLost;
+    result.message = fmt::format("{} features found in both images, {} needed to start", kf_features,
+                                 options.registration.min_inliers);
+    return;
+  }
+  if (!first) ++segment;
+  started = true;
+  frames_lost = 0;
+  result.status = TrackingStatus::kStarted;
+  result.is_key_frame = true;
+}
+
+/// The reconstruction of this frame takes the place of the last key frame's, and new features join.
+void Pipeline::Impl::make_key_frame(const StereoFrame& frame, StageClock& clock, FrameResult& result) {
+  T_map_kf = renormalised(T_map_kf * T_kf_left);
+  T_kf_left.setIdentity();
+  tracker.remove_if([](const Feature& f) { return !f.in_right || !f.is_inlier; });
+  reconstruct();
+  add_features(frame, clock);
+  kf_frame = frame.index;
+  kf_features = tracker.features().size();
+  result.is_key_frame = true;
+}
+
+/// Triangulates the tracked features where they are now.
+void Pipeline::Impl::reconstruct() {
+  tracker.remove_if([this](Feature& feature) {
+    const Eigen::Vector3d uvu = optimal_measurement(feature.left.uv_px, feature.right.uv_px);
+    const std::optional<Eigen::Vector3d> p = rig.triangulate(uvu);
+    if (!p) return true;
+    feature.p_kf = *p;
+    feature.covariance_kf = point_covariance(rig, uvu, options.registration.sigma_px);
+    ++feature.key_frames;
+    return false;
+  });
+}
+
+/// New features, their match in the right image and their first reconstruction. Sections 2.1 and 2.2.
+void Pipeline::Impl::add_features(const StereoFrame& frame, StageClock& clock) {
+  occupied.clear();
+  for (const Feature& feature : tracker.features()) occupied.push_back(feature.left.uv_px);
+  const int wanted = options.tracking.max_features - static_cast<int>(occupied.size());
+  const std::vector<Eigen::Vector2f>& corners = detector.detect(frame.left, occupied, wanted, kPatchSize);
+  clock.lap(Stage::kDetection);
+  dense.compute(frame.left, frame.right);
+  clock.lap(Stage::kDisparity);
+  for (const Eigen::Vector2f& corner : corners) {
+    Feature* feature = tracker.add(left, corner);
+    if (feature == nullptr) continue;
+    const auto match = matcher.match(tracker.first_view(*feature), feature->left, dense, right);
+    if (!match) continue;
+    feature->right = *match;
+    feature->in_right = true;
+    const Eigen::Vector3d uvu = optimal_measurement(feature->left.uv_px, feature->right.uv_px);
+    feature->p_kf = *rig.triangulate(uvu);
+    feature->covariance_kf = point_covariance(rig, uvu, options.registration.sigma_px);
+    feature->key_frames = 1;
+  }
+  tracker.remove_if([](const Feature& f) { return !f.in_right; });
+  clock.lap(Stage::kStereo);
+}
+
+bool Pipeline::Impl::wants_key_frame(const FrameResult& result) const {
+  const KeyFrameOptions& when = options.key_frame;
+  return T_kf_left.translation().norm() > when.max_translation_m ||
+         rotation_angle_rad(T_kf_left.linear()) > when.max_rotation_deg * std::numbers::pi / 180 ||
+         result.inliers < when.min_tracked_ratio * static_cast<double>(kf_features) ||
+         result.index - kf_frame >= when.max_interval_frames;
+}
+
+Pose Pipeline::Impl::predicted_T_kf_left(const StereoFrame& frame) const {
+  return T_kf_left * frame.T_previous_left.value_or(T_previous_left);
+}
+
+void Pipeline::Impl::record(const StereoFrame& frame, FrameResult& result) {
+  result.segment = segment;
+  result.T_map_left = T_map_kf * T_kf_left;
+  result.features.reserve(tracker.features().size());
+  for (const Feature& f : tracker.features()) {
+    if (!f.in_left) continue;
+    result.features.push_back({f.id, f.left.uv_px.x(), f.left.uv_px.y(), f.right.uv_px.x(), f.right.uv_px.y(),
+                               f.in_right, f.key_frames == 1 && result.is_key_frame, f.is_inlier});
+  }
+  result.state_hash = state_hash(result);
+  trajectory.push_back({frame.stamp_ns, result.T_map_left});
+  if (!result.is_key_frame) return;
+  key_frames.push_back({frame.index, frame.stamp_ns, segment, T_map_kf, result.covariance});
+}
+
+void Pipeline::Impl::check(const StereoFrame& frame) const {
+  const cv::Size size(rig.width_px, rig.height_px);
+  if (frame.left.type() != CV_8UC1 || frame.right.type() != CV_8UC1 || frame.left.size() != size ||
+      frame.right.size() != size) {
+    throw std::invalid_argument(fmt::format("frame {}: wanted two 8-bit grey images of {} x {} px",
+                                            frame.index, rig.width_px, rig.height_px));
+  }
+}
+
+}  // namespace groundloop::slam

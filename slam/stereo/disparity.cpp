@@ -1,0 +1,45 @@
+#include "slam/stereo/disparity.h"
+
+#include <algorithm>
+#include <array>
+#include <opencv2/imgproc.hpp>
+
+namespace groundloop::slam {
+
+namespace {
+constexpr float kDisparityScale = 16;  // fixed point of OpenCV's disparity maps
+}
+
+DenseDisparity::DenseDisparity(const DisparityOptions& options)
+    : matcher_(cv::StereoBM::create(options.max_disparity_px / 2, options.window_px)) {
+  matcher_->setPreFilterType(cv::StereoBM::PREFILTER_XSOBEL);
+  matcher_->setUniquenessRatio(options.uniqueness_percent);
+  matcher_->setTextureThreshold(options.texture_threshold);
+  matcher_->setSpeckleWindowSize(0);
+}
+
+void DenseDisparity::compute(const cv::Mat& left, const cv::Mat& right) {
+  cv::resize(left, half_left_, cv::Size(left.cols / 2, left.rows / 2), 0, 0, cv::INTER_AREA);
+  cv::resize(right, half_right_, half_left_.size(), 0, 0, cv::INTER_AREA);
+  matcher_->compute(half_left_, half_right_, disparity_);
+}
+
+std::optional<float> DenseDisparity::around(float u_px, float v_px) const {
+  constexpr int kReach = 3;
+  constexpr size_t kLeast = 5;
+  // Pixel (2i + 0.5) of the full image is pixel i of the half one.
+  const int u = cvRound((u_px - 0.5F) / 2), v = cvRound((v_px - 0.5F) / 2);
+  std::array<int16_t, (2 * kReach + 1) * (2 * kReach + 1)> known;
+  size_t count = 0;
+  for (int row = std::max(v - kReach, 0); row <= std::min(v + kReach, disparity_.rows - 1); ++row) {
+    const auto* values = disparity_.ptr<int16_t>(row);
+    for (int col = std::max(u - kReach, 0); col <= std::min(u + kReach, disparity_.cols - 1); ++col) {
+      if (values[col] >= 0) known[count++] = values[col];
+    }
+  }
+  if (count < kLeast) return std::nullopt;
+  std::nth_element(known.begin(), known.begin() + count / 2, known.begin() + count);
+  return 2.0F * static_cast<float>(known[count / 2]) / kDisparityScale;
+}
+
+}  // namespace groundloop::slam

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+
+#include "slam/types/config.h"
+
+namespace groundloop::slam {
+
+/// Options of the dense disparity map. YAML: slam.disparity
+struct DisparityOptions {
+  int max_disparity_px = 128;   ///< search width at full resolution
+  int window_px = 11;           ///< correlation window at half resolution, odd
+  int uniqueness_percent = 10;  ///< by how much the best match must beat the second best
+  int texture_threshold = 10;   ///< least texture of a window
+
+  template <class Archive>
+  void visit(Archive& a) {
+    a("max_disparity_px", max_disparity_px, {.min = 32, .max = 512});
+    a("window_px", window_px, {.min = 5, .max = 51});
+    a("uniqueness_percent", uniqueness_percent, {.min = 0, .max = 100});
+    a("texture_threshold", texture_threshold, {.min = 0, .max = 1000});
+  }
+  void check(ConfigReader& reader) const {
+    if (max_disparity_px % 32 != 0) reader.problem("max_disparity_px", "a multiple of 32");
+    if (window_px % 2 == 0) reader.problem("window_px", "an odd number");
+  }
+};
+
+/// Dense disparity by block matching on half-resolution images: rough, and cheap. Section 2.2 of the paper.
+class DenseDisparity {
+ public:
+  explicit DenseDisparity(const DisparityOptions& options);
+
+  /// @param left,right rectified, CV_8UC1
+  void compute(const cv::Mat& left, const cv::Mat& right);
+
+  /// Half-resolution map, CV_16SC1: disparity in half-resolution px times 16; negative where unknown.
+  const cv::Mat& half_resolution() const { return disparity_; }
+
+  /// Disparity [full-resolution px] near a full-resolution pixel: the median of the known values around it.
+  std::optional<float> around(float u_px, float v_px) const;
+
+ private:
+  cv::Ptr<cv::StereoBM> matcher_;
+  cv::Mat half_left_, half_right_, disparity_;
+};
+
+}  // namespace groundloop::slam

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+
+#include "slam/features/affine_klt.h"
+#include "slam/stereo/disparity.h"
+#include "slam/types/config.h"
+#include "slam/types/stereo_rig.h"
+
+namespace groundloop::slam {
+
+/// Options of left-right matching. YAML: slam.stereo
+struct StereoOptions {
+  double epipolar_gate_px = 1.0;       ///< largest row difference of a match
+  double min_disparity_px = 1.0;       ///< beyond the disparity at infinity; smaller ones carry no depth
+  double max_prediction_error_px = 6;  ///< farther from the dense disparity is another surface
+
+  template <class Archive>
+  void visit(Archive& a) {
+    a("epipolar_gate_px", epipolar_gate_px, {.min = 0.01, .max = 20});
+    a("min_disparity_px", min_disparity_px, {.min = 0, .max = 100});
+    a("max_prediction_error_px", max_prediction_error_px, {.min = 0.5, .max = 100});
+  }
+};
+
+/// Left-right matching: the dense map predicts where a feature is in the right image, affine KLT of the
+/// feature's first view finds it there. Section 2.2 of the paper.
+class StereoMatcher {
+ public:
+  StereoMatcher(const StereoRig& rig, const StereoOptions& options, const KltOptions& klt)
+      : rig_(rig), options_(options), klt_(klt) {}
+
+  /// @param left  where the feature is in the left image
+  /// @return where it is in the right one; none when the dense map knows nothing or the match is not credible
+  std::optional<AffineState> match(const PatchTemplate& patch, const AffineState& left,
+                                   const DenseDisparity& dense, const ImagePyramid& right) const;
+
+  /// Whether two positions can be the same point: rows agree, disparity is positive.
+  bool plausible(const Eigen::Vector2f& left_px, const Eigen::Vector2f& right_px) const;
+
+ private:
+  StereoRig rig_;
+  StereoOptions options_;
+  KltOptions klt_;
+};
+
+/// Measurement (u_left, v, u_right) of a matched pair. The point that minimises the image-plane error of a
+/// rectified pair has the mean of the two rows and unchanged columns (Hartley & Sturm; facts.md section 6).
+Eigen::Vector3d optimal_measurement(const Eigen::Vector2f& left_px, const Eigen::Vector2f& right_px);
+
+}  // namespace groundloop::slam

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "slam/features/affine_klt.h"
+
+namespace groundloop::slam {
+
+/// A feature while it lives: its first view (in the tracker's template store), where it is now in both
+/// images, and its reconstruction at the last key frame.
+struct Feature {
+  int64_t id = 0;
+  int slot = 0;  ///< of its first view
+
+  AffineState left;
+  AffineState right;
+  bool in_left = false;   ///< found in the current left image
+  bool in_right = false;  ///< found in the current right image, and left-right plausible
+
+  Eigen::Vector3d p_kf = Eigen::Vector3d::Zero();  ///< in the left camera of the last key frame [m]
+  Eigen::Matrix3d covariance_kf = Eigen::Matrix3d::Identity();
+  bool is_inlier = false;  ///< agreed with the last registered motion
+  int key_frames = 0;      ///< number of key frames that reconstructed it
+};
+
+}  // namespace groundloop::slam

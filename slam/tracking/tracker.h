@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "slam/features/affine_klt.h"
+#include "slam/stereo/matcher.h"
+#include "slam/tracking/feature.h"
+#include "slam/types/config.h"
+#include "slam/types/pose.h"
+#include "slam/types/stereo_rig.h"
+
+namespace groundloop::slam {
+
+/// Options of tracking. YAML: slam.tracking
+struct TrackingOptions {
+  int max_features = 400;    ///< aimed at after every key frame
+  int start_level = 1;       ///< coarsest pyramid level searched first; all levels are tried when it fails
+  int hold_lost_frames = 3;  ///< frames without pose that are waited for before a new segment is started
+
+  template <class Archive>
+  void visit(Archive& a) {
+    a("max_features", max_features, {.min = 20, .max = 5000});
+    a("start_level", start_level, {.min = 0, .max = 5});
+    a("hold_lost_frames", hold_lost_frames, {.min = 0, .max = 1000});
+  }
+};
+
+/// Follows features through the left and the right images, from one stereo pair to the next.
+class Tracker {
+ public:
+  Tracker(const StereoRig& rig, const TrackingOptions& options, const KltOptions& klt,
+          const StereoMatcher& matcher);
+
+  /// Finds every feature in a new pair. Where to look comes from the feature's 3D position and the motion, as
+  /// section 2.3 of the paper says.
+  /// @param T_kf_previous  pose of the previous left camera in the key frame's, as estimated
+  /// @param T_kf_left      pose of the new one, as predicted
+  void track(const ImagePyramid& left, const ImagePyramid& right, const Pose& T_kf_previous,
+             const Pose& T_kf_left);
+
+  /// Tries again the features that were lost, or did not agree, starting where the registered motion puts
+  /// them.
+  void track_again(const ImagePyramid& left, const ImagePyramid& right, const Pose& T_kf_left);
+
+  /// Adds a feature seen at uv_px in `left`, which becomes its first view; none when the window is no good.
+  Feature* add(const ImagePyramid& left, const Eigen::Vector2f& uv_px);
+
+  void clear();
+  /// Removes the features for which `gone` is true; the order of the rest stays.
+  template <class Predicate>
+  void remove_if(Predicate gone) {
+    size_t kept = 0;
+    for (Feature& feature : features_) {
+      if (gone(feature)) {
+        free_slots_.push_back(feature.slot);
+      } else {
+        features_[kept++] = feature;
+      }
+    }
+    features_.resize(kept);
+  }
+
+  std::vector<Feature>& features() { return features_; }
+  const std::vector<Feature>& features() const { return features_; }
+  const PatchTemplate& first_view(const Feature& feature) const { return *templates_[feature.slot]; }
+
+ private:
+  void track_one(const ImagePyramid& left, const ImagePyramid& right, Feature& feature) const;
+  bool find(const PatchTemplate& patch, const ImagePyramid& image, AffineState& state) const;
+
+  StereoRig rig_;
+  TrackingOptions options_;
+  KltOptions klt_;
+  StereoMatcher matcher_;
+  std::vector<Feature> features_;
+  std::vector<std::unique_ptr<PatchTemplate>> templates_;
+  std::vector<int> free_slots_;
+  int64_t next_id_ = 0;
+};
+
+}  // namespace groundloop::slam
