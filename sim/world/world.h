@@ -14,14 +14,15 @@ namespace groundloop::sim {
 /// (x forward, y left, z up, origin on the floor below the axle).
 class World {
  public:
-  /// @throws InputError naming file, line and element (a missing texture, XML that MuJoCo rejects, no robot body)
+  /// @throws InputError naming file, line and element (a missing texture, XML that MuJoCo rejects, no robot
+  /// body)
   static World load(const Scenario& scenario);
   /// A world without a robot, for tests and previews.
   static World load_file(const std::string& world_file);
 
   const mjModel& model() const { return *model_; }
-  int robot_body() const { return robot_body_; }       ///< MuJoCo body id; -1 without a robot
-  bool is_robot_geom(int geom) const;                  ///< part of the robot's body tree
+  int robot_body() const { return robot_body_; }  ///< MuJoCo body id; -1 without a robot
+  bool is_robot_geom(int geom) const;             ///< part of the robot's body tree
 
   using ModelPtr = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
   using DataPtr = std::unique_ptr<mjData, decltype(&mj_deleteData)>;

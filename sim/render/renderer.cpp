@@ -1,0 +1,180 @@
+#include "sim/render/renderer.h"
+
+#include <algorithm>
+#include <opencv2/core.hpp>
+#include <stdexcept>
+#include <vector>
+
+#include "sim/render/gl_context.h"
+
+namespace groundloop::sim {
+namespace {
+
+/// Room for what MuJoCo may draw beside the model's geoms (skins, tendons, flex of equality constraints).
+constexpr int kExtraGeoms = 1000;
+/// Geom groups 0..2 are visible; 3 and above hold geometry for collisions only.
+constexpr int kVisibleGroups = 3;
+
+/// The model with the drawing options of one renderer; shares all arrays with the world's.
+mjModel with_options(const mjModel& model, int width_px, int height_px, const RenderChoice& choice) {
+  mjModel view = model;
+  view.vis.global.offwidth = width_px;
+  view.vis.global.offheight = height_px;
+  view.vis.quality.offsamples = choice.antialiasing;
+  if (!choice.shadows) view.vis.quality.shadowsize = 0;
+  return view;
+}
+
+mjvOption geoms_only() {
+  mjvOption option;
+  mjv_defaultOption(&option);
+  for (int group = 0; group < mjNGROUP; ++group) {
+    option.geomgroup[group] = group < kVisibleGroups ? 1 : 0;
+    option.sitegroup[group] = 0;
+    option.jointgroup[group] = 0;
+    option.tendongroup[group] = 0;
+    option.actuatorgroup[group] = 0;
+  }
+  std::fill_n(option.flags, mjNVISFLAG, 0);
+  option.flags[mjVIS_TEXTURE] = 1;
+  option.flags[mjVIS_STATIC] = 1;
+  option.flags[mjVIS_SKIN] = 1;
+  option.flags[mjVIS_TRANSPARENT] = 0;
+  return option;
+}
+
+void set_vector(float* to, const Eigen::Vector3d& from) {
+  for (int i = 0; i < 3; ++i) to[i] = static_cast<float>(from[i]);
+}
+
+}  // namespace
+
+struct Renderer::Impl {
+  Impl(const World& world, int width, int height, const RenderChoice& choice)
+      : width_px(width),
+        height_px(height),
+        model(with_options(world.model(), width, height, choice)),
+        near_m(model.vis.map.znear * model.stat.extent),
+        far_m(model.vis.map.zfar * model.stat.extent),
+        gl(make_osmesa_context()),
+        option(geoms_only()),
+        rgb(3 * static_cast<size_t>(width) * height) {
+    mjv_defaultScene(&scene);
+    mjr_defaultContext(&context);
+    mjv_makeScene(&model, &scene, model.ngeom + kExtraGeoms);
+    mjr_makeContext(&model, &context, mjFONTSCALE_100);
+    mjr_setBuffer(mjFB_OFFSCREEN, &context);
+    scene.flags[mjRND_SHADOW] = choice.shadows ? 1 : 0;
+    scene.flags[mjRND_REFLECTION] = choice.reflections ? 1 : 0;
+    scene.flags[mjRND_HAZE] = 0;
+  }
+
+  ~Impl() {
+    gl->make_current();
+    mjr_freeContext(&context);
+    mjv_freeScene(&scene);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void render(const Camera& camera) {
+    gl->make_current();
+    aim(camera);
+    mjr_render(viewport(), &scene, &context);
+  }
+
+  /// The frustum through the corners of the image, from -0.5 to width - 0.5. MuJoCo takes the frustum's
+  /// horizontal size from the viewport, its centre from the camera; both of its cameras are averaged.
+  void aim(const Camera& camera) {
+    const double scale = near_m / camera.focal_px;
+    const Eigen::Matrix3d R_world_camera = camera.T_world_camera.linear();
+    for (mjvGLCamera& gl_camera : scene.camera) {
+      set_vector(gl_camera.pos, camera.T_world_camera.translation());
+      set_vector(gl_camera.forward, R_world_camera.col(2));
+      set_vector(gl_camera.up, -R_world_camera.col(1));
+      gl_camera.frustum_center = static_cast<float>(scale * (0.5 * (width_px - 1) - camera.cx_px));
+      gl_camera.frustum_top = static_cast<float>(scale * (camera.cy_px + 0.5));
+      gl_camera.frustum_bottom = static_cast<float>(-scale * (height_px - 0.5 - camera.cy_px));
+      gl_camera.frustum_near = static_cast<float>(near_m);
+      gl_camera.frustum_far = static_cast<float>(far_m);
+    }
+  }
+
+  mjrRect viewport() const { return {0, 0, width_px, height_px}; }
+
+  const int width_px, height_px;
+  const mjModel model;
+  const double near_m, far_m;
+  std::unique_ptr<GlContext> gl;
+  const mjvOption option;
+  mjvScene scene;
+  mjrContext context;
+  std::vector<unsigned char> rgb;  ///< as OpenGL delivers it: rows bottom-up
+};
+
+Renderer::Renderer(const World& world, int width_px, int height_px, const RenderChoice& choice)
+    : impl_(std::make_unique<Impl>(world, width_px, height_px, choice)) {}
+
+Renderer::~Renderer() = default;
+
+void Renderer::update_scene(const mjData& data) {
+  // MuJoCo reads the state only, but takes it as non-const.
+  mjvCamera camera;
+  mjv_defaultCamera(&camera);
+  mjv_updateScene(&impl_->model, const_cast<mjData*>(&data), &impl_->option, nullptr, &camera, mjCAT_ALL,
+                  &impl_->scene);
+}
+
+void Renderer::render_grey(const Camera& camera, cv::Mat& grey) {
+  impl_->render(camera);
+  mjr_readPixels(impl_->rgb.data(), nullptr, impl_->viewport(), &impl_->context);
+  grey.create(impl_->height_px, impl_->width_px, CV_8UC1);
+  for (int row = 0; row < grey.rows; ++row) {
+    const unsigned char* from = &impl_->rgb[3 * static_cast<size_t>(grey.rows - 1 - row) * grey.cols];
+    uchar* to = grey.ptr(row);
+    // Rec. 601 luma in fixed point: 0.299 R + 0.587 G + 0.114 B, rounded.
+    for (int col = 0; col < grey.cols; ++col, from += 3) {
+      to[col] = static_cast<uchar>((77 * from[0] + 150 * from[1] + 29 * from[2] + 128) >> 8);
+    }
+  }
+}
+
+void Renderer::render_bgr(const Camera& camera, cv::Mat& bgr) {
+  impl_->render(camera);
+  mjr_readPixels(impl_->rgb.data(), nullptr, impl_->viewport(), &impl_->context);
+  bgr.create(impl_->height_px, impl_->width_px, CV_8UC3);
+  for (int row = 0; row < bgr.rows; ++row) {
+    const unsigned char* from = &impl_->rgb[3 * static_cast<size_t>(bgr.rows - 1 - row) * bgr.cols];
+    uchar* to = bgr.ptr(row);
+    for (int col = 0; col < bgr.cols; ++col, from += 3, to += 3) {
+      to[0] = from[2];
+      to[1] = from[1];
+      to[2] = from[0];
+    }
+  }
+}
+
+void Renderer::render_depth(const Camera& camera, cv::Mat& depth_m) {
+  if (impl_->context.offSamples > 0) {
+    throw std::logic_error("Renderer::render_depth needs a renderer without antialiasing");
+  }
+  impl_->render(camera);
+  cv::Mat bottom_up(impl_->height_px, impl_->width_px, CV_32FC1);
+  mjr_readPixels(nullptr, bottom_up.ptr<float>(), impl_->viewport(), &impl_->context);
+  depth_m.create(bottom_up.size(), CV_32FC1);
+  const double shrink = 1 - impl_->near_m / impl_->far_m;
+  for (int row = 0; row < depth_m.rows; ++row) {
+    const float* from = bottom_up.ptr<float>(depth_m.rows - 1 - row);
+    float* to = depth_m.ptr<float>(row);
+    for (int col = 0; col < depth_m.cols; ++col) {
+      to[col] = static_cast<float>(impl_->near_m / (1 - from[col] * shrink));
+    }
+  }
+}
+
+RendererInfo Renderer::info() const {
+  impl_->gl->make_current();
+  return {impl_->gl->backend(), impl_->gl->renderer(), impl_->gl->version(), impl_->context.offSamples};
+}
+
+}  // namespace groundloop::sim

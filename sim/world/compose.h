@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "sim/world/mjcf.h"
+
+namespace groundloop::sim {
+
+/// Puts a robot into a world: one MJCF tree in which both keep their meaning.
+///  - `<default>` classes of either file apply to its own elements only (they are renamed world/...,
+///  robot/...);
+///  - the robot's `<compiler>` units hold; angles of the world are converted;
+///  - gravity, wind, magnetic field and medium come from the world, solver settings from the robot;
+///  - `<visual>` and `<statistic>` come from the world; key frames of both are dropped (the scenario places
+///  the robot).
+/// @throws InputError: a name used in both files, or settings that cannot both hold
+MjcfElement compose_mjcf(MjcfElement world, MjcfElement robot);
+
+/// The body of a robot file that has a free joint; gets the name "robot" when it has none.
+/// @throws InputError when there is none, or more than one
+std::string robot_root_body(MjcfElement& robot);
+
+}  // namespace groundloop::sim

@@ -1,0 +1,119 @@
+#include "sim/world/world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <mutex>
+#include <numbers>
+#include <regex>
+#include <stdexcept>
+
+#include "sim/world/compose.h"
+#include "sim/world/mjcf.h"
+
+namespace groundloop::sim {
+namespace {
+
+constexpr double kNear_m = 0.04;
+constexpr double kFar_m = 60;
+
+/// MuJoCo's own handlers print, write MUJOCO_LOG.TXT and call exit().
+void install_handlers() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    mju_user_error = [](const char* message) { throw std::runtime_error(std::string("MuJoCo: ") + message); };
+    mju_user_warning = [](const char* message) { fmt::print(stderr, "MuJoCo warning: {}\n", message); };
+  });
+}
+
+/// MuJoCo's message with the user's file and line in place of the composed document's.
+InputError load_error(std::string message, const MjcfText& document) {
+  static const std::regex line_pattern("line (= )?([0-9]+)");
+  const MjcfElement* element = document.element_of_line.front();
+  std::smatch match;
+  if (std::regex_search(message, match, line_pattern)) {
+    const size_t line = std::stoul(match[2]);
+    if (line >= 1 && line <= document.element_of_line.size()) element = document.element_of_line[line - 1];
+    message = message.substr(0, message.find_last_of('\n', static_cast<size_t>(match.position())));
+  }
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  while (!message.empty() && message.back() == ' ') message.pop_back();
+  return InputError(element->problem(message, "MJCF that MuJoCo accepts"));
+}
+
+World::ModelPtr compile(const MjcfElement& scene) {
+  // mj_loadXML has global state (it calls srand(), too).
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  install_handlers();
+
+  const MjcfText document = write_mjcf(scene);
+  constexpr const char* kName = "scene.xml";
+  const auto files = std::make_unique<mjVFS>();
+  mj_defaultVFS(files.get());
+  const std::unique_ptr<mjVFS, decltype(&mj_deleteVFS)> cleanup(files.get(), mj_deleteVFS);
+  mj_makeEmptyFileVFS(files.get(), kName, static_cast<int>(document.text.size()));
+  std::memcpy(files->filedata[0], document.text.data(), document.text.size());
+
+  std::array<char, 1000> error{};
+  World::ModelPtr model(mj_loadXML(kName, files.get(), error.data(), static_cast<int>(error.size())),
+                        mj_deleteModel);
+  if (!model) throw load_error(error.data(), document);
+  if (error[0] != '\0') fmt::print(stderr, "MuJoCo warning: {}: {}\n", scene.file, error.data());
+  return model;
+}
+
+/// A wall must look the same from everywhere: the head-light keeps only its ambient part. Clipping planes are
+/// set in metres; MuJoCo stores them in units of the scene's extent.
+void prepare_for_cameras(mjModel& model) {
+  std::fill_n(model.vis.headlight.diffuse, 3, 0.0F);
+  std::fill_n(model.vis.headlight.specular, 3, 0.0F);
+  model.stat.extent = std::max(model.stat.extent, 0.1);
+  model.vis.map.znear = static_cast<float>(kNear_m / model.stat.extent);
+  model.vis.map.zfar = static_cast<float>(std::max(kFar_m / model.stat.extent, 3.0));
+}
+
+}  // namespace
+
+World::World(ModelPtr model, int robot_body, const StartPose& start)
+    : model_(std::move(model)), robot_body_(robot_body), start_(start) {
+  prepare_for_cameras(*model_);
+}
+
+World World::load(const Scenario& scenario) {
+  MjcfElement world = read_mjcf(scenario.world);
+  MjcfElement robot = read_mjcf(scenario.robot.model);
+  const std::string body = robot_root_body(robot);
+  ModelPtr model = compile(compose_mjcf(std::move(world), std::move(robot)));
+  const int robot_body = mj_name2id(model.get(), mjOBJ_BODY, body.c_str());
+  return World(std::move(model), robot_body, scenario.robot.start);
+}
+
+World World::load_file(const std::string& world_file) {
+  return World(compile(read_mjcf(world_file)), -1, {});
+}
+
+bool World::is_robot_geom(int geom) const {
+  return robot_body_ >= 0 && model_->body_rootid[model_->geom_bodyid[geom]] == robot_body_;
+}
+
+World::DataPtr World::make_data() const {
+  DataPtr data(mj_makeData(model_.get()), mj_deleteData);
+  if (robot_body_ >= 0) {
+    mjtNum* q = data->qpos + model_->jnt_qposadr[model_->body_jntadr[robot_body_]];
+    q[0] = start_.x_m;
+    q[1] = start_.y_m;
+    const double half_yaw_rad = start_.yaw_deg * std::numbers::pi / 360;
+    const mjtNum yaw[4] = {std::cos(half_yaw_rad), 0, 0, std::sin(half_yaw_rad)};
+    const mjtNum in_file[4] = {q[3], q[4], q[5], q[6]};
+    mju_mulQuat(q + 3, yaw, in_file);
+  }
+  mj_forward(model_.get(), data.get());
+  return data;
+}
+
+}  // namespace groundloop::sim
