@@ -16,14 +16,15 @@ namespace groundloop::slam {
 /// When a frame becomes a key frame: as soon as one of these holds. Section 2.1 of the paper: a compromise
 /// between how often pose and map are updated and the work that this takes.
 struct KeyFrameOptions {
-  double max_translation_m = 0.3;  ///< motion since the last key frame
+  double max_translation_ratio =
+      0.1;                         ///< motion since the last key frame, relative to the median depth there
   double max_rotation_deg = 8;     ///< motion since the last key frame
   double min_tracked_ratio = 0.6;  ///< agreeing features, relative to those of the last key frame
   int max_interval_frames = 30;
 
   template <class Archive>
   void visit(Archive& a) {
-    a("max_translation_m", max_translation_m, {.min = 0.001, .max = 100});
+    a("max_translation_ratio", max_translation_ratio, {.min = 0.001, .max = 10});
     a("max_rotation_deg", max_rotation_deg, {.min = 0.1, .max = 180});
     a("min_tracked_ratio", min_tracked_ratio, {.min = 0, .max = 1});
     a("max_interval_frames", max_interval_frames, {.min = 1, .max = 100000});

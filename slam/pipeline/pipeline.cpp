@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 #include "slam/registration/registration.h"
 #include "slam/stereo/disparity.h"
 #include "slam/stereo/matcher.h"
+#include "slam/tracking/rotation_alignment.h"
 #include "slam/tracking/tracker.h"
 #include "slam/types/counter_random.h"
 #include "slam/types/stereo_uncertainty.h"
@@ -26,6 +28,7 @@ struct Pipeline::Impl {
         dense(options.disparity),
         matcher(rig, options.stereo, options.klt),
         tracker(rig, options.tracking, options.klt, matcher),
+        rotation(rig),
         registration(rig, options.registration) {}
 
   void process(const StereoFrame& frame, FrameResult& result);
@@ -36,6 +39,7 @@ struct Pipeline::Impl {
   void make_key_frame(const StereoFrame& frame, StageClock& clock, FrameResult& result);
   void reconstruct();
   void add_features(const StereoFrame& frame, StageClock& clock);
+  void measure_key_frame(int64_t frame_index);
   bool wants_key_frame(const FrameResult& result) const;
   void record(const StereoFrame& frame, FrameResult& result);
   Pose predicted_T_kf_left(const StereoFrame& frame) const;
@@ -47,6 +51,7 @@ struct Pipeline::Impl {
   DenseDisparity dense;
   StereoMatcher matcher;
   Tracker tracker;
+  RotationAlignment rotation;
   Registration registration;
 
   ImagePyramid left, right;
@@ -54,6 +59,7 @@ struct Pipeline::Impl {
   std::vector<size_t> pair_feature;  ///< index into tracker.features(), per pair
   RegistrationResult registered;
   std::vector<Eigen::Vector2f> occupied;
+  std::vector<double> depths_m;
 
   bool started = false;
   int segment = 0;
@@ -62,7 +68,8 @@ struct Pipeline::Impl {
   Pose T_kf_left = Pose::Identity();        ///< last frame in the last key frame
   Pose T_previous_left = Pose::Identity();  ///< last motion, for constant velocity
   int64_t kf_frame = 0;
-  size_t kf_features = 0;  ///< reconstructed at the last key frame
+  size_t kf_features = 0;        ///< reconstructed at the last key frame
+  double kf_median_depth_m = 0;  ///< of those features
   std::vector<KeyFrameRecord> key_frames;
   std::vector<CloudPoint> cloud;
   Trajectory trajectory;
@@ -111,19 +118,34 @@ void Pipeline::Impl::process(const StereoFrame& frame, FrameResult& result) {
 
 /// Tracks the features of the last key frame and registers their new reconstruction with the old one.
 void Pipeline::Impl::track_frame(const StereoFrame& frame, StageClock& clock, FrameResult& result) {
-  const Pose T_kf_predicted = predicted_T_kf_left(frame);
+  const auto seed = static_cast<uint64_t>(frame.index);
+  const auto few = [this](double share) {
+    return registered.inliers < static_cast<int>(share * static_cast<double>(kf_features));
+  };
+  Pose T_kf_predicted = predicted_T_kf_left(frame);
   tracker.track(left, right, T_kf_left, T_kf_predicted);
   clock.lap(Stage::kTracking);
-  register_frame(static_cast<uint64_t>(frame.index), T_kf_predicted);
+  register_frame(seed, T_kf_predicted);
   clock.lap(Stage::kRegistration);
 
-  // Where the motion was far from the plan, features were looked for in the wrong place: look again.
-  if (registered.usable && registered.inliers < static_cast<int>(0.7 * static_cast<double>(kf_features))) {
-    tracker.track_again(left, right, registered.T_from_to);
+  // The plan was far off, or there is none: let the whole image say how the camera turned.
+  if (!registered.usable || few(0.4)) {
+    Pose T_left = T_kf_left.inverse() * T_kf_predicted;
+    T_left.linear() = rotation.align(left, T_left.linear());
+    T_kf_predicted = T_kf_left * T_left;
+    tracker.track_again(left, right, T_kf_left, T_kf_predicted);
     clock.lap(Stage::kTracking);
-    register_frame(static_cast<uint64_t>(frame.index), registered.T_from_to);
+    register_frame(seed, T_kf_predicted);
     clock.lap(Stage::kRegistration);
   }
+  // Features that were looked for in the wrong place are looked for again where the motion found puts them.
+  if (registered.usable && few(0.7)) {
+    tracker.track_again(left, right, T_kf_left, registered.T_from_to);
+    clock.lap(Stage::kTracking);
+    register_frame(seed, registered.T_from_to);
+    clock.lap(Stage::kRegistration);
+  }
+  rotation.remember(left);
 
   result.features_tracked = static_cast<int>(pairs.size());
   result.inliers = registered.inliers;
@@ -171,8 +193,8 @@ void Pipeline::Impl::start_segment(const StereoFrame& frame, StageClock& clock, 
   T_kf_left.setIdentity();
   tracker.clear();
   add_features(frame, clock);
-  kf_frame = frame.index;
-  kf_features = tracker.features().size();
+  rotation.remember(left);
+  measure_key_frame(frame.index);
   if (static_cast<int>(kf_features) < options.registration.min_inliers) {
     tracker.clear();
     started = false;
@@ -195,8 +217,7 @@ void Pipeline::Impl::make_key_frame(const StereoFrame& frame, StageClock& clock,
   tracker.remove_if([](const Feature& f) { return !f.in_right || !f.is_inlier; });
   reconstruct();
   add_features(frame, clock);
-  kf_frame = frame.index;
-  kf_features = tracker.features().size();
+  measure_key_frame(frame.index);
   result.is_key_frame = true;
 }
 
@@ -238,9 +259,20 @@ void Pipeline::Impl::add_features(const StereoFrame& frame, StageClock& clock) {
   clock.lap(Stage::kStereo);
 }
 
+void Pipeline::Impl::measure_key_frame(int64_t frame_index) {
+  kf_frame = frame_index;
+  kf_features = tracker.features().size();
+  depths_m.clear();
+  for (const Feature& feature : tracker.features()) depths_m.push_back(feature.p_kf.z());
+  if (depths_m.empty()) return;
+  const auto middle = depths_m.begin() + static_cast<std::ptrdiff_t>(depths_m.size() / 2);
+  std::nth_element(depths_m.begin(), middle, depths_m.end());
+  kf_median_depth_m = *middle;
+}
+
 bool Pipeline::Impl::wants_key_frame(const FrameResult& result) const {
   const KeyFrameOptions& when = options.key_frame;
-  return T_kf_left.translation().norm() > when.max_translation_m ||
+  return T_kf_left.translation().norm() > when.max_translation_ratio * kf_median_depth_m ||
          rotation_angle_rad(T_kf_left.linear()) > when.max_rotation_deg * std::numbers::pi / 180 ||
          result.inliers < when.min_tracked_ratio * static_cast<double>(kf_features) ||
          result.index - kf_frame >= when.max_interval_frames;

@@ -1,5 +1,7 @@
 #include "slam/tracking/tracker.h"
 
+#include <cmath>
+
 namespace groundloop::slam {
 namespace {
 
@@ -8,6 +10,14 @@ constexpr double kMinDepth_m = 0.05;
 Eigen::Vector2f left_of(const Eigen::Vector3d& uvu) { return uvu.head<2>().cast<float>(); }
 Eigen::Vector2f right_of(const Eigen::Vector3d& uvu) {
   return Eigen::Vector2d(uvu.z(), uvu.y()).cast<float>();
+}
+
+/// How a small window that faces the camera changes: it grows as it comes nearer and turns as the camera
+/// rolls.
+Eigen::Matrix2f shape_change(const Pose& T_left_previous, double growth) {
+  const double roll = std::atan2(T_left_previous.linear()(1, 0), T_left_previous.linear()(0, 0));
+  const double c = growth * std::cos(roll), s = growth * std::sin(roll);
+  return (Eigen::Matrix2d() << c, -s, s, c).finished().cast<float>();
 }
 
 }  // namespace
@@ -27,53 +37,60 @@ void Tracker::track(const ImagePyramid& left, const ImagePyramid& right, const P
       continue;
     }
     const Eigen::Vector3d now = rig_.project(p_left), before = rig_.project(p_previous);
-    const auto growth = static_cast<float>(p_previous.z() / p_left.z());
-    // From where it was found last, moved by the predicted displacement; a feature not found then starts from
-    // its point alone.
-    if (feature.in_left) {
-      feature.left.uv_px += left_of(now) - left_of(before);
-    } else {
-      feature.left.uv_px = left_of(now);
-    }
-    if (feature.in_right) {
-      feature.right.uv_px += right_of(now) - right_of(before);
-    } else {
-      feature.right.uv_px = right_of(now);
-    }
-    feature.left.A *= growth;
-    feature.right.A *= growth;
-    track_one(left, right, feature);
+    feature.shape_before = feature.left.A;
+    // From where it was found last, moved by the predicted displacement; a feature that was not found then
+    // starts from its point alone.
+    AffineState start_left = feature.left, start_right = feature.right;
+    start_left.uv_px = left_of(now);
+    if (feature.in_left) start_left.uv_px += feature.left.uv_px - left_of(before);
+    start_right.uv_px = right_of(now);
+    if (feature.in_right) start_right.uv_px += feature.right.uv_px - right_of(before);
+    const Eigen::Matrix2f change = shape_change(T_left_kf * T_kf_previous, p_previous.z() / p_left.z());
+    start_left.A = change * feature.left.A;
+    start_right.A = change * feature.right.A;
+    track_one(left, right, start_left, start_right, feature);
   }
 }
 
-void Tracker::track_again(const ImagePyramid& left, const ImagePyramid& right, const Pose& T_kf_left) {
-  const Pose T_left_kf = T_kf_left.inverse();
+void Tracker::track_again(const ImagePyramid& left, const ImagePyramid& right, const Pose& T_kf_previous,
+                          const Pose& T_kf_left) {
+  const Pose T_previous_kf = T_kf_previous.inverse(), T_left_kf = T_kf_left.inverse();
   for (Feature& feature : features_) {
     if (feature.in_left && feature.in_right && feature.is_inlier) continue;
+    const Eigen::Vector3d p_previous = T_previous_kf * feature.p_kf;
     const Eigen::Vector3d p_left = T_left_kf * feature.p_kf;
-    if (p_left.z() < kMinDepth_m) continue;
+    if (p_previous.z() < kMinDepth_m || p_left.z() < kMinDepth_m) continue;
     const Eigen::Vector3d now = rig_.project(p_left);
-    feature.left.uv_px = left_of(now);
-    feature.right.uv_px = right_of(now);
-    track_one(left, right, feature);
+    AffineState start;
+    start.A = shape_change(T_left_kf * T_kf_previous, p_previous.z() / p_left.z()) * feature.shape_before;
+    start.uv_px = left_of(now);
+    AffineState start_right = start;
+    start_right.uv_px = right_of(now);
+    track_one(left, right, start, start_right, feature);
   }
 }
 
-void Tracker::track_one(const ImagePyramid& left, const ImagePyramid& right, Feature& feature) const {
+void Tracker::track_one(const ImagePyramid& left, const ImagePyramid& right, const AffineState& start_left,
+                        const AffineState& start_right, Feature& feature) const {
   const PatchTemplate& patch = first_view(feature);
   feature.in_right = false;
-  feature.in_left = find(patch, left, feature.left);
+  feature.in_left = find(patch, left, start_left, feature.left);
   if (!feature.in_left) return;
-  feature.in_right =
-      find(patch, right, feature.right) && matcher_.plausible(feature.left.uv_px, feature.right.uv_px);
+  feature.in_right = find(patch, right, start_right, feature.right) &&
+                     matcher_.plausible(feature.left.uv_px, feature.right.uv_px);
 }
 
-bool Tracker::find(const PatchTemplate& patch, const ImagePyramid& image, AffineState& state) const {
-  const AffineState start = state;
-  if (track_affine(patch, image, klt_, options_.start_level, state) == KltStatus::kTracked) return true;
-  if (options_.start_level + 1 >= patch.levels) return false;
+bool Tracker::find(const PatchTemplate& patch, const ImagePyramid& image, const AffineState& start,
+                   AffineState& state) const {
   state = start;
-  return track_affine(patch, image, klt_, patch.levels - 1, state) == KltStatus::kTracked;
+  if (track_affine(patch, image, klt_, options_.start_level, state) == KltStatus::kTracked) return true;
+  state = start;
+  if (options_.start_level + 1 < patch.levels &&
+      track_affine(patch, image, klt_, patch.levels - 1, state) == KltStatus::kTracked) {
+    return true;
+  }
+  state = start;
+  return false;
 }
 
 Feature* Tracker::add(const ImagePyramid& left, const Eigen::Vector2f& uv_px) {

@@ -40,9 +40,9 @@ class Tracker {
   void track(const ImagePyramid& left, const ImagePyramid& right, const Pose& T_kf_previous,
              const Pose& T_kf_left);
 
-  /// Tries again the features that were lost, or did not agree, starting where the registered motion puts
-  /// them.
-  void track_again(const ImagePyramid& left, const ImagePyramid& right, const Pose& T_kf_left);
+  /// Tries again the features that were not found, or did not agree, from their points alone.
+  void track_again(const ImagePyramid& left, const ImagePyramid& right, const Pose& T_kf_previous,
+                   const Pose& T_kf_left);
 
   /// Adds a feature seen at uv_px in `left`, which becomes its first view; none when the window is no good.
   Feature* add(const ImagePyramid& left, const Eigen::Vector2f& uv_px);
@@ -67,8 +67,10 @@ class Tracker {
   const PatchTemplate& first_view(const Feature& feature) const { return *templates_[feature.slot]; }
 
  private:
-  void track_one(const ImagePyramid& left, const ImagePyramid& right, Feature& feature) const;
-  bool find(const PatchTemplate& patch, const ImagePyramid& image, AffineState& state) const;
+  void track_one(const ImagePyramid& left, const ImagePyramid& right, const AffineState& start_left,
+                 const AffineState& start_right, Feature& feature) const;
+  bool find(const PatchTemplate& patch, const ImagePyramid& image, const AffineState& start,
+            AffineState& state) const;
 
   StereoRig rig_;
   TrackingOptions options_;
