@@ -15,19 +15,29 @@ namespace groundloop::sim {
 struct Exposure {
   int64_t index = 0;
   int64_t stamp_ns = 0;
-  slam::Pose T_world_body;     ///< true pose of the robot's body frame
-  slam::Pose T_world_left;     ///< true pose of the left camera
+  slam::Pose T_world_body;  ///< true pose of the robot's body frame
+  slam::Pose T_world_left;  ///< true pose of the left camera
   slam::Pose T_world_right;
   slam::Pose T_odom_body;      ///< wheel odometry (with its errors) since the start, planar
   slam::Pose T_plan_body;      ///< where the plan says the robot is, world frame
-  slam::Pose T_previous_left;  ///< planned motion of the left camera since the last exposure (what the core may know)
-  World::DataPtr state{nullptr, mj_deleteData};  ///< MuJoCo state to render
+  slam::Pose T_previous_left;  ///< motion since the last exposure as planned, or as odometry says when it
+                               ///< steers (what the core may know); identity at the first
+  std::shared_ptr<const mjData> state;  ///< MuJoCo state to render; may be kept, and freed in any thread
 };
 
 /// Physics, controller and odometry: drives the plan and stops at every exposure.
+///
+/// Time: exposure k is at k times the head's period exactly. Physics runs in the model's own steps whatever
+/// the head's rate, so the drive is the same for every head; an exposure between two steps continues the last
+/// step's velocities for the remainder, in a copy of the state. That copy is both what is rendered and what
+/// is true.
+///
+/// The first exposure is at time 0, after the robot has settled on its wheels. The drive takes as long as the
+/// plan; exposures() = floor(duration / period) + 1.
 class Simulation {
  public:
-  /// @throws InputError when the plan runs into something (names segment, place and geom) or the models do not fit
+  /// @throws InputError when the plan runs into something (names segment, place and geom) or the models do
+  /// not fit
   Simulation(const World& world, const HeadModel& head, const Scenario& scenario);
   ~Simulation();
 
@@ -37,6 +47,8 @@ class Simulation {
   int64_t exposures() const;
   /// Length of the planned path [m].
   double planned_length_m() const;
+  /// Time the plan takes [s].
+  double planned_duration_s() const;
 
  private:
   struct Impl;

@@ -1,0 +1,181 @@
+#include "sim/simulation/simulation.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "sim/robot/controller.h"
+#include "sim/robot/drive.h"
+#include "sim/robot/odometry.h"
+#include "sim/robot/planned_path.h"
+#include "sim/simulation/path_check.h"
+#include "sim/simulation/state_pool.h"
+#include "sim/truth/truth_world.h"
+
+namespace groundloop::sim {
+namespace {
+
+constexpr double kSettle_s = 0.5;
+constexpr double kSettled_m = 0.01;  ///< how far the robot may sink or slide while it settles
+constexpr double kLongestStep_s = 0.0021;
+
+/// Pose of the robot's body frame: the coordinates of its free joint.
+slam::Pose body_pose(const World& world, const mjData& state) {
+  const mjtNum* q = state.qpos + world.model().jnt_qposadr[world.model().body_jntadr[world.robot_body()]];
+  slam::Pose T_world_body = slam::Pose::Identity();
+  T_world_body.linear() = Eigen::Quaterniond(q[3], q[4], q[5], q[6]).normalized().toRotationMatrix();
+  T_world_body.translation() << q[0], q[1], q[2];
+  return T_world_body;
+}
+
+void update_kinematics(const mjModel& model, mjData& state) {
+  mj_kinematics(&model, &state);
+  mj_comPos(&model, &state);
+  mj_camlight(&model, &state);
+}
+
+int64_t step_ns_of(const mjModel& model, const Scenario& scenario) {
+  if (model.opt.timestep > kLongestStep_s) {
+    throw InputError(Problem{scenario.robot.model, 0, "option.timestep",
+                             fmt::format("{}", model.opt.timestep), "a physics step of 2 ms or less"});
+  }
+  return std::llround(model.opt.timestep * 1e9);
+}
+
+}  // namespace
+
+struct Simulation::Impl {
+  Impl(const World& world_, const HeadModel& head, const Scenario& scenario);
+
+  void settle();
+  void step();
+  Pose2 steering_pose() const;
+  Exposure expose();
+
+  const World& world;
+  const mjModel& model;
+  Feedback feedback;
+  Pose2 T_world_start;
+  std::string scenario_file;
+  int start_line;
+  Drive drive;
+  PlannedPath path;
+  slam::Pose T_body_left, T_left_right;
+  int64_t step_ns, period_ns, exposures;
+
+  World::DataPtr state;
+  StatePool pool;
+  WheelController wheels;
+  Odometry odometry;
+  int64_t steps = 0;
+  int64_t next_exposure = 0;
+  slam::Pose T_world_expected_left;  ///< as planned, or as odometry says, at the last exposure
+};
+
+Simulation::Impl::Impl(const World& world_, const HeadModel& head, const Scenario& scenario)
+    : world(world_),
+      model(world.model()),
+      feedback(scenario.plan.feedback),
+      scenario_file(scenario.file),
+      start_line(scenario.robot.start.line),
+      drive(find_drive(world, scenario.robot.model)),
+      path(scenario.robot.start, scenario.plan, drive.limits),
+      T_body_left(head.rig().T_body_left),
+      T_left_right(Eigen::Translation3d(head.baseline_m, 0, 0)),
+      step_ns(step_ns_of(model, scenario)),
+      period_ns(head.period_ns()),
+      exposures(static_cast<int64_t>(std::floor(path.duration_s() * 1e9 / static_cast<double>(period_ns))) +
+                1),
+      state(world.make_data()),
+      pool(model),
+      wheels(drive.limits, 0, 0),
+      odometry(scenario.robot.odometry, drive.limits, scenario.seed, 0, 0) {
+  T_world_start = path.at(0).T_world_body;
+  check_path(scenario, path, TruthWorld(world, *state));
+  settle();
+  const double left_rad = state->qpos[drive.left_qpos], right_rad = state->qpos[drive.right_qpos];
+  wheels = WheelController(drive.limits, left_rad, right_rad);
+  odometry = Odometry(scenario.robot.odometry, drive.limits, scenario.seed, left_rad, right_rad);
+}
+
+/// Lets the robot sink into its contacts before time starts.
+void Simulation::Impl::settle() {
+  const slam::Pose before = body_pose(world, *state);
+  while (state->time < kSettle_s) mj_step(&model, state.get());
+  state->time = 0;
+  const double moved_m = (body_pose(world, *state).translation() - before.translation()).norm();
+  if (!(moved_m < kSettled_m)) {
+    throw InputError(Problem{scenario_file, start_line, "robot.start",
+                             fmt::format("the robot moves by {:.2f} m when it is put there", moved_m),
+                             "a level floor at z = 0 under the robot"});
+  }
+}
+
+/// Where the steering believes the robot is.
+Pose2 Simulation::Impl::steering_pose() const {
+  if (feedback == Feedback::kOdometry) return composed(T_world_start, odometry.T_odom_body());
+  return to_pose2(body_pose(world, *state));
+}
+
+void Simulation::Impl::step() {
+  const double step_s = model.opt.timestep;
+  const PlannedState planned = path.at(static_cast<double>(steps) * step_s);
+  const double left_rad = state->qpos[drive.left_qpos], right_rad = state->qpos[drive.right_qpos];
+  const BodyTwist wanted =
+      feedback == Feedback::kPlan ? planned.twist : tracking_twist(planned, steering_pose());
+  const WheelSpeeds speeds = wheels.command(wanted, left_rad, right_rad, step_s);
+  state->ctrl[drive.left_actuator] = speeds.left_radps;
+  state->ctrl[drive.right_actuator] = speeds.right_radps;
+  mj_step(&model, state.get());
+  odometry.update(state->qpos[drive.left_qpos], state->qpos[drive.right_qpos]);
+  ++steps;
+}
+
+Exposure Simulation::Impl::expose() {
+  Exposure exposure;
+  exposure.index = next_exposure++;
+  exposure.stamp_ns = exposure.index * period_ns;
+  while ((steps + 1) * step_ns <= exposure.stamp_ns) step();
+
+  // the rest of the way to the exposure, in a copy
+  const std::shared_ptr<mjData> at_exposure = pool.copy(*state);
+  const double remainder_s = static_cast<double>(exposure.stamp_ns - steps * step_ns) * 1e-9;
+  mj_integratePos(&model, at_exposure->qpos, at_exposure->qvel, remainder_s);
+  update_kinematics(model, *at_exposure);
+  at_exposure->time = static_cast<double>(exposure.stamp_ns) * 1e-9;
+  exposure.state = at_exposure;
+
+  // truth
+  exposure.T_world_body = body_pose(world, *at_exposure);
+  exposure.T_world_left = exposure.T_world_body * T_body_left;
+  exposure.T_world_right = exposure.T_world_left * T_left_right;
+
+  // what the robot knows: a copy of the odometry reads the encoders at the exposure
+  Odometry reading = odometry;
+  reading.update(at_exposure->qpos[drive.left_qpos], at_exposure->qpos[drive.right_qpos]);
+  exposure.T_odom_body = to_pose(reading.T_odom_body());
+  exposure.T_plan_body = to_pose(path.at(at_exposure->time).T_world_body);
+  const slam::Pose T_world_expected = feedback == Feedback::kOdometry
+                                          ? to_pose(composed(T_world_start, reading.T_odom_body()))
+                                          : exposure.T_plan_body;
+  const slam::Pose T_world_left = T_world_expected * T_body_left;
+  exposure.T_previous_left =
+      exposure.index == 0 ? slam::Pose::Identity() : T_world_expected_left.inverse() * T_world_left;
+  T_world_expected_left = T_world_left;
+  return exposure;
+}
+
+Simulation::Simulation(const World& world, const HeadModel& head, const Scenario& scenario)
+    : impl_(std::make_unique<Impl>(world, head, scenario)) {}
+Simulation::~Simulation() = default;
+
+std::optional<Exposure> Simulation::advance() {
+  if (impl_->next_exposure >= impl_->exposures) return std::nullopt;
+  return impl_->expose();
+}
+
+int64_t Simulation::exposures() const { return impl_->exposures; }
+double Simulation::planned_length_m() const { return impl_->path.length_m(); }
+double Simulation::planned_duration_s() const { return impl_->path.duration_s(); }
+
+}  // namespace groundloop::sim
