@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "sim/world/world.h"
@@ -19,16 +20,35 @@ struct RayHit {
   int geom = -1;  ///< MuJoCo geom id
 };
 
-/// The scene's exact geometry in a Bullet collision world, independent of the renderer. Holds every visible geom
-/// of the world but the robot's own.
+/// A geom seen from above: what a figure of the scene draws.
+struct Outline {
+  int geom = -1;                         ///< MuJoCo geom id
+  std::string name;                      ///< geom name, or "geom 17 (body desk)"
+  std::string body;                      ///< name of its body
+  std::vector<Eigen::Vector2d> polygon;  ///< convex, counter-clockwise, world frame [m]
+  double z_min_m = 0;
+  double z_max_m = 0;
+};
+
+/// The scene's exact geometry in Bullet's collision structures, independent of the renderer. Holds every
+/// visible geom of the world but the robot's own: truth is what can be seen, so geoms of group 3 and above
+/// (which MuJoCo does not draw: collision-only) and geoms of alpha 0 are left out. Planes are the rectangles
+/// that are drawn. Curved geoms are the exact quadrics; the renderer draws facets whose corners lie on them.
+///
+/// All members are const and may be used by several threads.
 class TruthWorld {
  public:
+  /// @param data  state with positions computed (mj_forward or mj_kinematics); geoms are taken where they are
+  /// now
   TruthWorld(const World& world, const mjData& data);
+  /// The same of a bare model; robot_body is the root of the body tree to leave out, -1 for none.
+  TruthWorld(const mjModel& model, const mjData& data, int robot_body);
   ~TruthWorld();
   TruthWorld(const TruthWorld&) = delete;
   TruthWorld& operator=(const TruthWorld&) = delete;
 
-  /// First surface along a ray; direction need not be of unit length.
+  /// First surface along a ray, from either side; direction need not be of unit length, max_distance_m is
+  /// finite.
   std::optional<RayHit> cast(const Eigen::Vector3d& origin_world, const Eigen::Vector3d& direction_world,
                              double max_distance_m) const;
 
@@ -36,21 +56,35 @@ class TruthWorld {
   std::optional<double> depth_m(const slam::StereoRig& rig, const slam::Pose& T_world_left, double u_px,
                                 double v_px, double max_depth_m = 100) const;
 
-  /// Exact occupancy: 1 where any geometry reaches into the cell between the two heights, else 0.
+  /// Exact occupancy: 1 where any geometry reaches into the cell between the two heights, else 0. Geometry
+  /// that only touches a cell (by less than 1e-6 m) does not occupy it. Box, sphere, ellipsoid, capsule and
+  /// cylinder are full inside; meshes and height fields are their surfaces. The floor is kept out by z_min_m
+  /// (about 0.02).
   slam::OccupancyMap occupancy(const slam::GridGeometry& geometry, double z_min_m, double z_max_m) const;
 
-  /// A grid that covers all geometry but unbounded planes, with a margin of one cell.
+  /// A grid that covers all geometry but unbounded planes, with a margin of one cell; its borders are
+  /// multiples of the cell size. Without bounded geometry it has no cells.
   slam::GridGeometry bounds(double cell_m) const;
 
   /// Cells of `geometry` that the left camera saw from these poses, true where a pixel ray crosses the cell
-  /// between the two heights before, or at, its first hit and not farther than max_range_m.
+  /// between the two heights before, or at, its first hit and not farther than max_range_m along the ray. A
+  /// seen surface marks the cell behind it, which holds the geometry. 128 x 40 rays an image, spread evenly.
   std::vector<uint8_t> visible_cells(const slam::GridGeometry& geometry, const slam::StereoRig& rig,
-                                     const std::vector<slam::Pose>& T_world_left, double z_min_m, double z_max_m,
-                                     double max_range_m) const;
+                                     const std::vector<slam::Pose>& T_world_left, double z_min_m,
+                                     double z_max_m, double max_range_m) const;
 
-  /// Name of a geom touched by the robot's geoms moved to this body pose (planar footprint swept over the robot's
-  /// height, enlarged by margin_m), or none.
+  /// Name of a geom touched by the robot's geoms moved to this body pose (planar footprint swept over the
+  /// robot's height, enlarged by margin_m), or none. Each geom of the robot at qpos0 is swept from 2 cm above
+  /// the floor (the height of the body origin at qpos0) to the robot's top; what lies above or below does not
+  /// count.
   std::optional<std::string> collision(double x_m, double y_m, double yaw_rad, double margin_m) const;
+
+  /// Outlines of the bounded geoms that reach into the band between two heights, in the order of geom ids;
+  /// curved ones as polygons of up to 64 corners.
+  std::vector<Outline> footprints(double z_min_m, double z_max_m) const;
+
+  /// "desk_top", or "geom 17 (body desk)" for a geom without a name.
+  std::string geom_name(int geom) const;
 
  private:
   struct Impl;
