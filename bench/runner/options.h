@@ -1,0 +1,54 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/scenario/scenario.h"
+
+namespace groundloop::bench {
+
+/// `--seed A..B`, both included; `--seed S` is S..S.
+struct SeedRange {
+  uint64_t first = 1;
+  uint64_t last = 1;
+};
+
+/// What `groundloop run` was asked for.
+struct RunOptions {
+  std::vector<std::string> scenarios;  ///< scenario files, at least one
+  std::optional<SeedRange> seeds;      ///< in place of each scenario's own seed
+  std::optional<int64_t> frames;       ///< only the first so many pairs
+  std::vector<sim::Override> set;      ///< `--set key=value`, in order
+  std::string
+      out;  ///< run folder of a single run, parent of the run folders of several; empty: runs/NAME-SEED
+  std::string junit;  ///< JUnit XML file to write; empty: none
+  int jobs = 1;       ///< runs at the same time, at least 1
+  bool json = false;  ///< the answer as JSON on stdout
+};
+
+/// What `groundloop replay` was asked for.
+struct ReplayOptions {
+  std::string dir;                 ///< recorded sequence
+  std::string format;              ///< "kitti" or "euroc"; empty: told from the folder
+  std::string preset = "default";  ///< preset of the core
+  std::vector<sim::Override>
+      set;                        ///< options of the core (`tracking.max_features=400`), on top of the preset
+  std::optional<int64_t> frames;  ///< only the first so many pairs
+  std::string truth;              ///< trajectory file to judge by; empty: the sequence's own, if it has one
+  std::string out;                ///< run folder; empty: runs/NAME of the sequence's folder
+  bool json = false;              ///< the answer as JSON on stdout
+};
+
+/// How a long job talks to whoever started it; called from any thread, one call at a time.
+struct JobControl {
+  /// (name of the run, pairs done, pairs in all)
+  std::function<void(const std::string& run, int64_t done, int64_t total)> progress;
+  /// Becomes true when the job is to stop cleanly (Ctrl-C); never null.
+  const std::atomic<bool>* stop = nullptr;
+};
+
+}  // namespace groundloop::bench
