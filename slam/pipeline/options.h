@@ -5,6 +5,7 @@
 
 #include "slam/features/affine_klt.h"
 #include "slam/features/detector.h"
+#include "slam/mapping/flog_options.h"
 #include "slam/registration/registration.h"
 #include "slam/stereo/disparity.h"
 #include "slam/stereo/matcher.h"
@@ -41,6 +42,7 @@ struct SlamOptions {
   StereoOptions stereo;
   RegistrationOptions registration;
   KeyFrameOptions key_frame;
+  FlogOptions mapping;
 
   template <class Archive>
   void visit(Archive& a) {
@@ -52,6 +54,7 @@ struct SlamOptions {
     a("stereo", stereo);
     a("registration", registration);
     a("key_frame", key_frame);
+    a("mapping", mapping);
   }
 };
 

@@ -29,7 +29,8 @@ struct Pipeline::Impl {
         matcher(rig, options.stereo, options.klt),
         tracker(rig, options.tracking, options.klt, matcher),
         rotation(rig),
-        registration(rig, options.registration) {}
+        registration(rig, options.registration),
+        mapper(rig, options.mapping) {}
 
   void process(const StereoFrame& frame, FrameResult& result);
   void track_frame(const StereoFrame& frame, StageClock& clock, FrameResult& result);
@@ -41,6 +42,8 @@ struct Pipeline::Impl {
   void add_features(const StereoFrame& frame, StageClock& clock);
   void measure_key_frame(int64_t frame_index);
   bool wants_key_frame(const FrameResult& result) const;
+  void update_map(const StereoFrame& frame, const Matrix6d& covariance);
+  void update_cloud(const StereoFrame& frame);
   void record(const StereoFrame& frame, FrameResult& result);
   Pose predicted_T_kf_left(const StereoFrame& frame) const;
   void check(const StereoFrame& frame) const;
@@ -53,6 +56,7 @@ struct Pipeline::Impl {
   Tracker tracker;
   RotationAlignment rotation;
   Registration registration;
+  Mapper mapper;
 
   ImagePyramid left, right;
   std::vector<PointPair> pairs;
@@ -71,7 +75,7 @@ struct Pipeline::Impl {
   size_t kf_features = 0;        ///< reconstructed at the last key frame
   double kf_median_depth_m = 0;  ///< of those features
   std::vector<KeyFrameRecord> key_frames;
-  std::vector<CloudPoint> cloud;
+  std::vector<CloudPoint> cloud;  ///< p_map is kept in the left camera of its key frame
   Trajectory trajectory;
 };
 
@@ -88,9 +92,16 @@ FrameResult Pipeline::process(const StereoFrame& frame) {
 void Pipeline::finish() {}
 const Trajectory& Pipeline::trajectory() const { return impl_->trajectory; }
 const std::vector<KeyFrameRecord>& Pipeline::key_frames() const { return impl_->key_frames; }
-std::vector<CloudPoint> Pipeline::cloud() const { return impl_->cloud; }
+OccupancyMap Pipeline::map() const { return impl_->mapper.grid().map(); }
+std::vector<OccupancyMap> Pipeline::layers() const { return impl_->mapper.grid().layers(); }
 const cv::Mat& Pipeline::last_disparity() const { return impl_->dense.half_resolution(); }
 const SlamOptions& Pipeline::options() const { return impl_->options; }
+
+std::vector<CloudPoint> Pipeline::cloud() const {
+  std::vector<CloudPoint> cloud = impl_->cloud;
+  for (CloudPoint& point : cloud) point.p_map = impl_->key_frames[point.key_frame].T_map_left * point.p_map;
+  return cloud;
+}
 
 /// One stereo pair, in the order of the paper's section 2.
 void Pipeline::Impl::process(const StereoFrame& frame, FrameResult& result) {
@@ -208,6 +219,8 @@ void Pipeline::Impl::start_segment(const StereoFrame& frame, StageClock& clock, 
   frames_lost = 0;
   result.status = TrackingStatus::kStarted;
   result.is_key_frame = true;
+  update_map(frame, result.covariance);
+  clock.lap(Stage::kMapping);
 }
 
 /// The reconstruction of this frame takes the place of the last key frame's, and new features join.
@@ -219,6 +232,8 @@ void Pipeline::Impl::make_key_frame(const StereoFrame& frame, StageClock& clock,
   add_features(frame, clock);
   measure_key_frame(frame.index);
   result.is_key_frame = true;
+  update_map(frame, result.covariance);
+  clock.lap(Stage::kMapping);
 }
 
 /// Triangulates the tracked features where they are now.
@@ -293,8 +308,39 @@ void Pipeline::Impl::record(const StereoFrame& frame, FrameResult& result) {
   }
   result.state_hash = state_hash(result);
   trajectory.push_back({frame.stamp_ns, result.T_map_left});
-  if (!result.is_key_frame) return;
-  key_frames.push_back({frame.index, frame.stamp_ns, segment, T_map_kf, result.covariance});
+}
+
+/// The points of a key frame enter the map and the cloud. Section 2.4.
+void Pipeline::Impl::update_map(const StereoFrame& frame, const Matrix6d& covariance) {
+  constexpr double kTrustedAfter = 3;  // key frames; a point seen once is trusted a third
+  KeyFrameRecord record{frame.index, frame.stamp_ns, segment, T_map_kf, covariance, {}};
+  record.observations.reserve(tracker.features().size());
+  for (const Feature& feature : tracker.features()) {
+    const Eigen::Vector3d uvu = optimal_measurement(feature.left.uv_px, feature.right.uv_px);
+    const double trust = std::min(1.0, feature.key_frames / kTrustedAfter);
+    record.observations.push_back({uvu.cast<float>(), static_cast<float>(trust)});
+  }
+  mapper.add(T_map_kf, record.observations);
+  key_frames.push_back(std::move(record));
+  update_cloud(frame);
+}
+
+/// A feature enters the cloud once two key frames agree on it, and stays as the key frame nearest to it saw
+/// it.
+void Pipeline::Impl::update_cloud(const StereoFrame& frame) {
+  const int key_frame = static_cast<int>(key_frames.size()) - 1;
+  for (Feature& feature : tracker.features()) {
+    if (feature.key_frames < 2) continue;
+    const auto sigma_m = static_cast<float>(std::sqrt(feature.covariance_kf(2, 2)));
+    const auto grey =
+        frame.left.at<uint8_t>(cvRound(feature.left.uv_px.y()), cvRound(feature.left.uv_px.x()));
+    if (feature.cloud_point < 0) {
+      feature.cloud_point = static_cast<int>(cloud.size());
+      cloud.push_back({feature.p_kf, sigma_m, grey, key_frame});
+    } else if (sigma_m < cloud[feature.cloud_point].sigma_m) {
+      cloud[feature.cloud_point] = {feature.p_kf, sigma_m, grey, key_frame};
+    }
+  }
 }
 
 void Pipeline::Impl::check(const StereoFrame& frame) const {

@@ -4,6 +4,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
+#include "slam/mapping/mapper.h"
 #include "slam/pipeline/options.h"
 #include "slam/types/frame_result.h"
 #include "slam/types/occupancy_map.h"
@@ -20,6 +21,7 @@ struct KeyFrameRecord {
   Pose T_map_left = Pose::Identity();
   Matrix6d covariance =
       Matrix6d::Zero();  ///< of the motion from the key frame before, twist in its left camera
+  std::vector<MapObservation> observations;  ///< what it added to the map
 };
 
 /// One point of the cloud.
@@ -27,7 +29,7 @@ struct CloudPoint {
   Eigen::Vector3d p_map = Eigen::Vector3d::Zero();
   float sigma_m = 0;  ///< standard deviation along its ray
   uint8_t grey = 0;
-  int key_frame = 0;  ///< index into key_frames()
+  int key_frame = 0;  ///< that saw it best, index into key_frames()
 };
 
 /// The SLAM core: stereo pairs in, pose of each and a map out. Knows nothing of where the pairs come from.

@@ -9,6 +9,7 @@ SlamOptions paper() {
   options.tracking.hold_lost_frames = 0;
   options.registration.cost = RegistrationCost::kScalarQuadratic;
   options.registration.lorentz_scale = 1;
+  options.mapping.fuse_layers = false;
   return options;
 }
 

@@ -22,6 +22,7 @@ struct Feature {
   Eigen::Vector3d p_kf = Eigen::Vector3d::Zero();  ///< in the left camera of the last key frame [m]
   Eigen::Matrix3d covariance_kf = Eigen::Matrix3d::Identity();
   bool is_inlier = false;  ///< agreed with the last registered motion
+  int cloud_point = -1;    ///< index of its point in the cloud, -1 before it has one
   int key_frames = 0;      ///< number of key frames that reconstructed it
 };
 
