@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
 
 #include "sim/head/head.h"
+#include "sim/scenario/metric_names.h"
 #include "sim/scenario/scenario.h"
 #include "slam/pipeline/options.h"
 #include "tests/house/tree.h"
@@ -119,12 +119,17 @@ void expect_explained(const std::set<std::string>& keys, const char* document) {
 }
 
 TEST(Documents, ExplainEveryKeyOfAScenario) {
-  auto keys = keys_of(sim::RobotChoice{}, sim::HeadChoice{}, sim::Plan{}, sim::RenderChoice{}, sim::SlamChoice{},
-                      sim::Expectation{});
-  keys.insert({"format", "name", "summary", "world", "robot", "head", "plan", "render", "slam", "seed", "expect",
-               "outcome"});
+  const std::set<std::string> metrics(sim::kMetricNames.begin(), sim::kMetricNames.end());
+  std::set<std::string> keys;
+  for (const std::string& key : keys_of(sim::Scenario{})) {
+    if (!metrics.contains(key)) keys.insert(key);
+  }
   EXPECT_GT(keys.size(), 25U);
   expect_explained(keys, "docs/scenario-format.md");
+}
+
+TEST(Documents, ExplainEveryMetric) {
+  expect_explained({sim::kMetricNames.begin(), sim::kMetricNames.end()}, "docs/metrics.md");
 }
 
 TEST(Documents, ExplainEveryKeyOfAHead) {
