@@ -45,8 +45,8 @@ Triangles height_field_triangles(const mjModel& model, int height_field) {
   for (int r = 0; r + 1 < rows; ++r) {
     for (int c = 0; c + 1 < cols; ++c) {
       const int i = r * cols + c;
-      corners.emplace_back(i, i + 1, i + cols);
-      corners.emplace_back(i + 1, i + cols + 1, i + cols);
+      corners.emplace_back(i, i + 1, i + cols + 1);
+      corners.emplace_back(i, i + cols + 1, i + cols);
     }
   }
   const int n = static_cast<int>(border.size());

@@ -1,6 +1,5 @@
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
-#include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
 
 #include <algorithm>
 #include <array>
@@ -14,13 +13,30 @@ namespace {
 using Eigen::Vector3d;
 using Corners = std::array<Vector3d, 3>;
 
-/// Keeps the nearest triangle along a segment.
-struct NearestTriangle : btTriangleRaycastCallback {
-  using btTriangleRaycastCallback::btTriangleRaycastCallback;
-  btScalar reportHit(const btVector3& normal, btScalar fraction, int, int) override {
-    nearest = SurfaceHit{fraction, from_bullet(normal)};
-    return fraction;
+/// Keeps the nearest triangle along a ray. Bullet's own ray test lets triangles reach beyond their edges by
+/// 1e-4 of their size; this one is exact, and neighbours leave no gap: the products of a common edge differ
+/// only in sign.
+struct NearestTriangle : btTriangleCallback {
+  NearestTriangle(const Vector3d& ray_origin, const Vector3d& ray_direction, double t_max)
+      : origin(ray_origin), direction(ray_direction), t_nearest(t_max) {}
+
+  void processTriangle(btVector3* p, int, int) override {
+    const Vector3d a = from_bullet(p[0]) - origin, b = from_bullet(p[1]) - origin,
+                   c = from_bullet(p[2]) - origin;
+    const double u = direction.dot(b.cross(c)), v = direction.dot(c.cross(a)), w = direction.dot(a.cross(b));
+    const bool inside = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+    const Vector3d normal = (b - a).cross(c - a);
+    const double approach = direction.dot(normal);
+    if (!inside || approach == 0) return;
+    const double t = a.dot(normal) / approach;
+    if (!(t > 0 && t <= t_nearest)) return;
+    t_nearest = t;
+    nearest = SurfaceHit{t, (approach < 0 ? normal : Vector3d(-normal)).normalized()};
   }
+
+  Vector3d origin;
+  Vector3d direction;
+  double t_nearest;
   std::optional<SurfaceHit> nearest;
 };
 
@@ -62,11 +78,9 @@ class TriangleSolid : public Solid {
 
   std::optional<SurfaceHit> first_hit(const Vector3d& origin, const Vector3d& direction,
                                       double t_max) const override {
-    const btVector3 from = to_bullet(origin), to = to_bullet(origin + t_max * direction);
-    NearestTriangle callback(from, to);
-    shape().performRaycast(&callback, from, to);
-    if (!callback.nearest) return std::nullopt;
-    return SurfaceHit{callback.nearest->t * t_max, callback.nearest->normal};
+    NearestTriangle callback(origin, direction, t_max);
+    shape().performRaycast(&callback, to_bullet(origin), to_bullet(origin + t_max * direction));
+    return callback.nearest;
   }
 
   bool reaches_into(const OrientedBox& box) const override {
