@@ -18,7 +18,13 @@ bool is_text(const std::string& content) { return content.find('\0') == std::str
 
 TEST(Files, HoldNoPathOfOneMachine) {
   // written in pieces, so that this file does not name them itself
-  const std::vector<std::string> places = {"/wo" "rk/", "/tm" "p/", "/ho" "me/"};
+  const std::vector<std::string> places = {
+      "/wo"
+      "rk/",
+      "/tm"
+      "p/",
+      "/ho"
+      "me/"};
   for (const fs::path& file : tree_files()) {
     const std::string content = tree_text(file);
     if (!is_text(content)) continue;

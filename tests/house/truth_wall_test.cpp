@@ -68,19 +68,23 @@ TEST(TruthWall, NoTargetOfSlamLinksWhatMakesOrJudgesTheTruth) {
 }
 
 TEST(TruthWall, TheRulesSeeAViolation) {
-  EXPECT_THAT(forbidden_includes("#include <vector>\n#include \"slam/types/pose.h\"\n#include <opencv2/core.hpp>\n"),
-              IsEmpty());
-  EXPECT_THAT(forbidden_includes("#include \"sim/truth/truth_world.h\"\n  #include <mujoco/mujoco.h>\n"
-                                 "#include <GL/osmesa.h>\n# include <bullet/btBulletCollisionCommon.h>\n"
-                                 "#include \"bench/metrics/trajectory.h\"\n#include \"../sim/world/world.h\"\n"),
-              ElementsAre("sim/truth/truth_world.h", "mujoco/mujoco.h", "GL/osmesa.h",
-                          "bullet/btBulletCollisionCommon.h", "bench/metrics/trajectory.h", "../sim/world/world.h"));
-  EXPECT_THAT(forbidden_links("slam_stereo groundloop_base opencv_core Eigen3::Eigen Threads::Threads yaml-cpp"),
-              IsEmpty());
-  EXPECT_THAT(forbidden_links("slam_stereo sim_truth mujoco /usr/lib/libOSMesa.so BulletCollision LinearMath GL "
-                              "bench_metrics"),
-              ElementsAre("sim_truth", "mujoco", "/usr/lib/libOSMesa.so", "BulletCollision", "LinearMath", "GL",
-                          "bench_metrics"));
+  EXPECT_THAT(
+      forbidden_includes("#include <vector>\n#include \"slam/types/pose.h\"\n#include <opencv2/core.hpp>\n"),
+      IsEmpty());
+  EXPECT_THAT(
+      forbidden_includes("#include \"sim/truth/truth_world.h\"\n  #include <mujoco/mujoco.h>\n"
+                         "#include <GL/osmesa.h>\n# include <bullet/btBulletCollisionCommon.h>\n"
+                         "#include \"bench/metrics/trajectory.h\"\n#include \"../sim/world/world.h\"\n"),
+      ElementsAre("sim/truth/truth_world.h", "mujoco/mujoco.h", "GL/osmesa.h",
+                  "bullet/btBulletCollisionCommon.h", "bench/metrics/trajectory.h", "../sim/world/world.h"));
+  EXPECT_THAT(
+      forbidden_links("slam_stereo groundloop_base opencv_core Eigen3::Eigen Threads::Threads yaml-cpp"),
+      IsEmpty());
+  EXPECT_THAT(
+      forbidden_links("slam_stereo sim_truth mujoco /usr/lib/libOSMesa.so BulletCollision LinearMath GL "
+                      "bench_metrics"),
+      ElementsAre("sim_truth", "mujoco", "/usr/lib/libOSMesa.so", "BulletCollision", "LinearMath", "GL",
+                  "bench_metrics"));
 }
 
 }  // namespace
