@@ -38,13 +38,13 @@ WheelSpeeds WheelController::command(const BodyTwist& wanted, double left_rad, d
 }
 
 double WheelController::command(Wheel& wheel, double wanted_radps, double angle_rad, double step_s) const {
+  const double behind_rad = wheel.angle_rad - angle_rad;
   const double change_radps = limits_.wheel_acceleration_radps2 * step_s;
   const double fastest_radps = limits_.wheel_speed_radps;
   wanted_radps = std::clamp(wanted_radps, wheel.speed_radps - change_radps, wheel.speed_radps + change_radps);
   wheel.speed_radps = std::clamp(wanted_radps, -fastest_radps, fastest_radps);
   wheel.angle_rad += wheel.speed_radps * step_s;
-  return std::clamp(wheel.speed_radps + kAngleGain_per_s * (wheel.angle_rad - angle_rad), -fastest_radps,
-                    fastest_radps);
+  return std::clamp(wheel.speed_radps + kAngleGain_per_s * behind_rad, -fastest_radps, fastest_radps);
 }
 
 }  // namespace groundloop::sim

@@ -53,17 +53,14 @@ YAML::Node value_node(const std::string& value) {
 /// A metric's name holds dots of its own: expect.trajectory.ate_rmse_m.max is {expect: {<metric>: {max:
 /// ..}}}.
 YAML::Node expectation_node(const std::string& key, const YAML::Node& value) {
-  YAML::Node inner = value;
-  std::string metric = key;
-  const size_t dot = key.rfind('.');
-  const std::string last = dot == std::string::npos ? "" : key.substr(dot + 1);
-  if (last == "min" || last == "max") {
-    inner = YAML::Node(YAML::NodeType::Map);
-    inner[last] = value;
-    metric = key.substr(0, dot);
-  }
   YAML::Node expect(YAML::NodeType::Map), root(YAML::NodeType::Map);
-  expect[metric] = inner;
+  const size_t dot = std::min(key.rfind('.'), key.size());
+  const std::string last = key.substr(dot);
+  if (last == ".min" || last == ".max") {
+    expect[key.substr(0, dot)][last.substr(1)] = value;
+  } else {
+    expect[key] = value;
+  }
   root["expect"] = expect;
   return root;
 }
@@ -118,7 +115,13 @@ void resolve(std::string& path, const std::string& key, const YAML::Node& node, 
   path = resolved.string();
 }
 
-void remove_repeated(std::vector<Problem>& problems) {
+/// In the file's order, the command line's last; what both a file and an override complain of once.
+std::vector<Problem> tidied(std::vector<Problem> problems) {
+  const auto place = [](const Problem& problem) {
+    return std::pair(problem.file == kCommandLine, problem.line);
+  };
+  std::stable_sort(problems.begin(), problems.end(),
+                   [&](const Problem& a, const Problem& b) { return place(a) < place(b); });
   std::vector<Problem> kept;
   for (Problem& problem : problems) {
     const bool seen = std::any_of(kept.begin(), kept.end(), [&](const Problem& other) {
@@ -126,7 +129,7 @@ void remove_repeated(std::vector<Problem>& problems) {
     });
     if (!seen) kept.push_back(std::move(problem));
   }
-  problems = std::move(kept);
+  return kept;
 }
 
 }  // namespace
@@ -175,10 +178,9 @@ Scenario load_scenario(const std::string& file, const std::vector<Override>& ove
   Scenario scenario;
   scenario.file = file;
 
-  // the file; a document that is no map has nothing else to report
   refuse_faults(root, file, problems);
   read_config(root, file, scenario, problems);
-  if (!root.IsMap()) throw InputError(problems);
+  if (!root.IsMap()) throw InputError(problems.front());  // the rest would say that every key is missing
   if (problems.empty()) remember_lines(root, scenario);
 
   for (const Override& override_ : overrides) apply_override(override_, scenario, problems);
@@ -188,8 +190,7 @@ Scenario load_scenario(const std::string& file, const std::vector<Override>& ove
           problems);
   resolve(scenario.head.model, "head.model", root["head"]["model"], scenario, overrides, "a head's YAML file",
           problems);
-  remove_repeated(problems);
-  if (!problems.empty()) throw InputError(problems);
+  if (!problems.empty()) throw InputError(tidied(std::move(problems)));
   return scenario;
 }
 

@@ -1,0 +1,249 @@
+#include "sim/scenario/scenario.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace groundloop::sim {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+
+/// A folder with the three model files that a scenario names.
+class ScenarioFiles : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / (std::string("groundloop_scenario_") + test->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "models");
+    for (const char* name : {"room.xml", "robot.xml", "head.yaml"})
+      std::ofstream(folder_ / "models" / name) << "\n";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string write(const std::string& text, const std::string& name = "test.yaml") const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+  /// Messages of a file that must be refused, with the folder left out.
+  std::vector<std::string> messages(const std::string& text,
+                                    const std::vector<Override>& overrides = {}) const {
+    const std::string file = write(text);
+    try {
+      load_scenario(file, overrides);
+    } catch (const InputError& e) {
+      std::vector<std::string> lines;
+      for (Problem problem : e.problems()) {
+        problem.file = fs::path(problem.file).filename().string();
+        lines.push_back(problem.text());
+      }
+      return lines;
+    }
+    return {};
+  }
+
+  fs::path folder_;
+};
+
+const std::string kHead = R"(format: 1
+name: test
+world: models/room.xml
+robot: {model: models/robot.xml, start: {x_m: 1.5, yaw_deg: 90}}
+head: {model: models/head.yaml}
+)";
+const std::string kGood = kHead + R"(plan:
+  speed_mps: 0.2
+  segments:
+    - {straight_m: 2}
+    - {arc: {radius_m: 1, angle_deg: -90}}
+    - {stop_s: 1.5}
+slam:
+  preset: paper
+  set:
+    tracking.max_features: 300
+    tracking.window: 15
+expect:
+  outcome: tracked
+  trajectory.ate_rmse_m: {max: 0.02}
+  map.with_true_poses.f1: {min: 0.9, max: 1}
+seed: 7
+)";
+
+TEST_F(ScenarioFiles, ReadsEveryPart) {
+  const Scenario s = load_scenario(write(kGood));
+  EXPECT_EQ(s.name, "test");
+  EXPECT_EQ(s.seed, 7U);
+  EXPECT_EQ(s.robot.start.x_m, 1.5);
+  EXPECT_EQ(s.robot.start.yaw_deg, 90);
+  EXPECT_EQ(s.robot.odometry.diameter_ratio, 1.002) << "a default";
+  EXPECT_EQ(s.plan.feedback, Feedback::kPlan);
+  ASSERT_EQ(s.plan.segments.size(), 3U);
+  EXPECT_EQ(s.plan.segments[0].straight_m, 2);
+  EXPECT_EQ(s.plan.segments[1].arc->angle_deg, -90);
+  EXPECT_EQ(s.plan.segments[2].stop_s, 1.5);
+  EXPECT_EQ(s.slam.preset, "paper");
+  EXPECT_EQ(s.slam.set.at("tracking.max_features"), "300");
+  EXPECT_EQ(s.expect.outcome, "tracked");
+  EXPECT_EQ(s.expect.metrics.size(), 2U);
+  EXPECT_EQ(s.expect.metrics.at("trajectory.ate_rmse_m").max, 0.02);
+  EXPECT_FALSE(s.expect.metrics.at("trajectory.ate_rmse_m").min.has_value());
+}
+
+TEST_F(ScenarioFiles, PathsAreAbsoluteAndRelativeToTheFile) {
+  const Scenario s = load_scenario(write(kGood));
+  EXPECT_EQ(s.world, (folder_ / "models" / "room.xml").string());
+  EXPECT_EQ(s.robot.model, (folder_ / "models" / "robot.xml").string());
+  EXPECT_EQ(s.head.model, (folder_ / "models" / "head.yaml").string());
+}
+
+TEST_F(ScenarioFiles, RemembersLinesForLaterMessages) {
+  const Scenario s = load_scenario(write(kGood));
+  EXPECT_EQ(s.robot.start.line, 4);
+  EXPECT_EQ(s.plan.segments[0].line, 9);
+  EXPECT_EQ(s.plan.segments[2].line, 11);
+  EXPECT_EQ(s.slam.preset_line, 13);
+  EXPECT_EQ(s.slam.set_lines.at("tracking.window"), 16);
+}
+
+TEST_F(ScenarioFiles, WrittenScenarioLoadsAgainAsTheSame) {
+  const Scenario s = load_scenario(write(kGood), {{"plan.feedback", "odometry"}, {"robot.start.y_m", "0.1"}});
+  const std::string text = to_yaml(s);
+  const Scenario again = load_scenario(write(text, "resolved.yaml"));
+  EXPECT_EQ(to_yaml(again), text);
+  EXPECT_EQ(again.plan.feedback, Feedback::kOdometry);
+  EXPECT_EQ(again.robot.start.y_m, 0.1) << "to the last bit";
+  EXPECT_EQ(again.world, s.world);
+  EXPECT_EQ(again.slam.set, s.slam.set);
+  EXPECT_EQ(again.expect.metrics.at("map.with_true_poses.f1").min, 0.9);
+}
+
+TEST_F(ScenarioFiles, EveryProblemIsReportedAtOnce) {
+  const auto lines = messages(R"(format: 2
+name: a/b
+world: models/rome.xml
+robot: {model: models/robot.xml, strat: {x_m: 1}}
+head: {model: models/head.yaml}
+plan:
+  speed_mps: fast
+  feedback: gps
+  segments:
+    - {straight_m: 2, stop_s: 1}
+    - {arc: {radius_m: -1}}
+seed: -3
+)");
+  EXPECT_THAT(
+      lines,
+      ElementsAre(
+          "test.yaml:4: robot.strat: unknown key: wanted one of: model, odometry, start (did you mean "
+          "start?)",
+          "test.yaml:7: plan.speed_mps: fast: wanted a number from 0.01 to 1.2",
+          "test.yaml:8: plan.feedback: gps: wanted one of: plan, odometry, slam, truth",
+          "test.yaml:10: plan.segments[0]: {straight_m: 2, stop_s: 1}: wanted exactly one of: straight_m, "
+          "arc, "
+          "stop_s, look",
+          "test.yaml:11: plan.segments[1].arc.radius_m: -1: wanted a number from 0 to 1000",
+          "test.yaml:11: plan.segments[1].arc.angle_deg: missing: wanted a number from -36000 to 36000",
+          "test.yaml:12: seed: -3: wanted a whole number",
+          "test.yaml:1: format: 2: wanted 1, the only format this version reads",
+          "test.yaml:2: name: a/b: wanted letters, digits, dots, dashes and underscores: it names the run "
+          "folder",
+          "test.yaml:3: world: models/rome.xml: wanted an MJCF file that exists (looked for " +
+              (folder_ / "models" / "rome.xml").string() + ")"));
+}
+
+TEST_F(ScenarioFiles, WhatDoesNotExistYetIsRefusedClearly) {
+  EXPECT_THAT(
+      messages(kHead + R"(plan:
+  speed_mps: 0.2
+  feedback: slam
+  segments: [{look: {pan_deg: 30}}]
+faults: [{at_s: 12, for_s: 3, wheel_slip: {left: 0.3}}]
+)"),
+      ElementsAre(
+          "test.yaml:10: faults[0]: a fault: wanted an empty list: faults are not supported yet",
+          "test.yaml:9: plan.segments[0].look: {pan_deg: 30}: wanted no look segment: none of the robots "
+          "has a pan-tilt head yet",
+          "test.yaml:8: plan.feedback: slam: wanted one of: plan, odometry, truth (steering by SLAM is "
+          "not supported yet)"));
+}
+
+TEST_F(ScenarioFiles, ExpectationsAreChecked) {
+  const std::string plan = "plan: {speed_mps: 0.2, segments: [{straight_m: 1}]}\n";
+  EXPECT_THAT(
+      messages(kHead + plan + R"(expect:
+  outcome: won
+  trajectory.ate_rms_m: {max: 1}
+  map.f1: {min: 0.9, max: 0.5}
+  map.iou: {}
+)"),
+      ElementsAre("test.yaml:9: expect.map.f1: {min: 0.9, max: 0.5}: wanted min (0.9) not above max (0.5)",
+                  "test.yaml:10: expect.map.iou: {}: wanted bounds: min and/or max",
+                  AllOf(HasSubstr("test.yaml:8: expect.trajectory.ate_rms_m: unknown key: wanted one of: "),
+                        EndsWith("(did you mean trajectory.ate_rmse_m?)")),
+                  "test.yaml:7: expect.outcome: won: wanted one of: tracked, lost"));
+}
+
+TEST_F(ScenarioFiles, AnEmptyPlanAndAMissingOne) {
+  EXPECT_THAT(messages(kHead), ElementsAre("test.yaml:1: plan: missing: wanted a map of keys and values"));
+  EXPECT_THAT(messages(kHead + "plan: {speed_mps: 0.2, segments: []}\n"),
+              ElementsAre("test.yaml:6: plan.segments: []: wanted at least one segment"));
+}
+
+TEST_F(ScenarioFiles, NotYamlNotThereNotAMap) {
+  EXPECT_THAT(messages("plan: {speed_mps: 0.2\n"), ElementsAre(HasSubstr("wanted valid YAML")));
+  EXPECT_THAT(messages("just words\n"),
+              ElementsAre("test.yaml:1: just words: wanted a map of keys and values"));
+  try {
+    load_scenario((folder_ / "nowhere.yaml").string());
+    FAIL() << "a missing file was accepted";
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), EndsWith("nowhere.yaml: no such file: wanted a YAML file that can be read"));
+  }
+}
+
+TEST_F(ScenarioFiles, OverridesReplaceValues) {
+  const Scenario s = load_scenario(write(kGood), {{"plan.speed_mps", "0.3"},
+                                                  {"seed", "3"},
+                                                  {"slam.preset", "default"},
+                                                  {"slam.tracking.max_features", "400"},
+                                                  {"slam.set.map.cell_m", "0.1"},
+                                                  {"expect.trajectory.ate_rmse_m.max", "0.5"},
+                                                  {"expect.map.f1", "{min: 0.4}"},
+                                                  {"expect.outcome", "lost"},
+                                                  {"plan.segments", "[{straight_m: 1}]"}});
+  EXPECT_EQ(s.plan.speed_mps, 0.3);
+  EXPECT_EQ(s.seed, 3U);
+  EXPECT_EQ(s.slam.preset, "default");
+  EXPECT_EQ(s.slam.preset_line, 0) << "not from the file any more";
+  EXPECT_EQ(s.slam.set.at("tracking.max_features"), "400");
+  EXPECT_EQ(s.slam.set_lines.at("tracking.max_features"), 0);
+  EXPECT_EQ(s.slam.set.at("tracking.window"), "15") << "others stay";
+  EXPECT_EQ(s.slam.set.at("map.cell_m"), "0.1");
+  EXPECT_EQ(s.expect.metrics.at("trajectory.ate_rmse_m").max, 0.5);
+  EXPECT_EQ(s.expect.metrics.at("map.f1").min, 0.4);
+  EXPECT_EQ(s.expect.outcome, "lost");
+  EXPECT_EQ(s.plan.segments.size(), 1U);
+}
+
+TEST_F(ScenarioFiles, ABadOverrideIsNamedAsOne) {
+  EXPECT_THAT(
+      messages(kGood, {{"plan.speed_mps", "fast"},
+                       {"plan.sped_mps", "1"},
+                       {"world", "nowhere.xml"},
+                       {"expect.map.f2.min", "1"},
+                       {"plan.segments", "[{straight_m: }"}}),
+      ElementsAre("--set: plan.speed_mps: fast: wanted a number from 0.01 to 1.2",
+                  "--set: plan.sped_mps: unknown key: wanted one of: feedback, segments, speed_mps, "
+                  "turn_rate_limit_degps (did you mean speed_mps?)",
+                  AllOf(HasSubstr("--set: expect.map.f2: unknown key"), EndsWith("(did you mean map.f1?)")),
+                  HasSubstr("--set: plan.segments: [{straight_m: }: wanted valid YAML"),
+                  HasSubstr("--set: world: nowhere.xml: wanted an MJCF file that exists")));
+}
+
+}  // namespace
+}  // namespace groundloop::sim
