@@ -1,0 +1,283 @@
+#include "bench/report/report.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <ostream>
+
+#include "bench/report/figures.h"
+#include "bench/report/html.h"
+#include "bench/report/report_style.h"
+#include "bench/report/report_tables.h"
+#include "bench/report/run_folder.h"
+#include "bench/report/run_series.h"
+#include "bench/report/svg_plot.h"
+#include "slam/mapping/atomic_file.h"
+#include "slam/types/config.h"
+#include "slam/types/frame_result.h"
+
+namespace groundloop::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Sizes of the encoded pictures; base64 adds a third, plots and tables stay below 1 MB: the report below 5
+// MB.
+constexpr size_t kPhotoBytes = 600'000;
+constexpr size_t kTopViewBytes = 1'000'000;
+constexpr size_t kPlanBytes = 300'000;
+
+std::string note(const std::string& text) { return "<p class=\"note\">" + text + "</p>"; }
+
+std::string figure(const std::string& content, const std::string& title, const std::string& caption) {
+  return "<figure>" + content + "<figcaption><b>" + title + "</b> " + caption + "</figcaption></figure>";
+}
+
+std::string picture(const cv::Mat& bgr, size_t max_bytes, const std::string& alt) {
+  return fmt::format("<img src=\"{}\" width=\"{}\" height=\"{}\" alt=\"{}\">", image_uri(bgr, max_bytes),
+                     bgr.cols, bgr.rows, escape_html(alt));
+}
+
+std::string plot(const Plot& what) { return "<div class=\"scroll\">" + svg_plot(what) + "</div>"; }
+
+/// A picture that the run left in figures/; empty when it did not.
+cv::Mat left_by_run(const RunFolder& run, const char* name) {
+  const fs::path file = fs::path(run.dir) / "figures" / name;
+  return fs::exists(file) ? cv::imread(file.string(), cv::IMREAD_COLOR) : cv::Mat();
+}
+
+void save_figure(const RunFolder& run, const char* name, const cv::Mat& bgr) {
+  std::vector<uint8_t> bytes;
+  cv::imencode(".png", bgr, bytes);
+  slam::write_file_atomically((fs::path(run.dir) / "figures" / name).string(), [&](std::ostream& out) {
+    out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  });
+}
+
+// ---- first screen
+
+std::string verdict(const RunHeader& header) {
+  size_t held = 0;
+  std::string reasons;
+  for (const JudgedMetric& judged : header.judged) {
+    held += judged.ok ? 1 : 0;
+    if (!judged.ok) reasons += "<li>" + escape_html(judged_sentence(judged)) + "</li>";
+  }
+  if (!reasons.empty()) reasons = "<ul>" + reasons + "</ul>";
+  const size_t all = header.judged.size();
+  const std::string count = all == 0 ? "nothing was expected of this run."
+                            : held == all
+                                ? fmt::format("{} of {} expectations hold.", held, all)
+                                : fmt::format("{} of {} expectations do not hold.", all - held, all);
+  if (header.result == "pass") {
+    return "<div class=\"verdict pass\"><strong>✓ Pass:</strong> " + count + reasons + "</div>";
+  }
+  if (header.result == "fell short") {
+    return "<div class=\"verdict short\"><strong>✗ Fell short:</strong> " + count + reasons + "</div>";
+  }
+  return "<div class=\"verdict error\"><strong>! Error:</strong> the run could not be judged." + reasons +
+         "</div>";
+}
+
+std::string tiles(const RunFolder& run) {
+  constexpr std::array<std::array<const char*, 2>, 8> kTiles = {
+      {{"trajectory.ate_rmse_m", "position error (ATE)"},
+       {"trajectory.rpe_trans_percent", "drift"},
+       {"trajectory.end_yaw_deg", "heading error at end"},
+       {"trajectory.length_m", "path"},
+       {"trajectory.lost_frames", "lost frames"},
+       {"map.f1", "map F1"},
+       {"timing.slam_ms_median", "SLAM a pair, median"},
+       {"timing.realtime_factor", "speed"}}};
+  std::string html = "<dl class=\"tiles\">";
+  html += fmt::format("<div><dt>stereo pairs</dt><dd>{}</dd></div>", run.header.frames);
+  for (const auto& [metric, title] : kTiles) {
+    const auto found = run.metrics.find(metric);
+    if (found == run.metrics.end()) continue;
+    html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", title, value_with_unit(metric, found->second));
+  }
+  return html + "</dl>";
+}
+
+// ---- figures after the paper's
+
+std::string frame_section(const RunFolder& run) {
+  std::string html = "<div class=\"pair\">";
+  if (const cv::Mat tracked = left_by_run(run, "left_tracked.png"); !tracked.empty()) {
+    html +=
+        figure(picture(tracked, kPhotoBytes, "Left image of the stereo pair with tracked features marked"),
+               "Left image with tracked features.",
+               "Rings: tracked and agreeing with the motion; crosses: tracked but rejected; squares: new. "
+               "(Paper: Fig. 1 simulated, Fig. 7 real.)");
+  }
+  if (const cv::Mat disparity = left_by_run(run, "disparity.png"); !disparity.empty()) {
+    html +=
+        figure(picture(disparity, kPhotoBytes * 2 / 3, "Dense disparity map in false colours with its scale"),
+               "Dense disparity.", "Red is near, blue far, dark unknown. (Paper: Fig. 2.)");
+  }
+  html += "</div>";
+  return html == "<div class=\"pair\"></div>" ? note("The run kept no left image and no disparity map.")
+                                              : html;
+}
+
+std::string top_view_section(const RunFolder& run, const TopView& view) {
+  if (view.estimate.empty() && view.cloud.empty())
+    return note("The run left no trajectory and no point cloud.");
+  const cv::Mat image = draw_top_view(view);
+  save_figure(run, "top_view.png", image);
+  const std::string truth = view.truth.empty() ? "No true trajectory is known."
+                                               : "Black: the true trajectory, red: the estimated one.";
+  return figure(picture(image, kTopViewBytes, "Top view of trajectory and point cloud over the scene"),
+                "Top view of trajectory and point cloud.",
+                truth +
+                    " Dots and segments: position and heading of key frames. Points are coloured by height; "
+                    "uncertain ones are faint. (Paper: Fig. 3 simulated, Fig. 8 real.)");
+}
+
+std::string map_section(const RunFolder& run, const PlacedRun& place) {
+  if (!run.map) return note("The run left no occupancy map.");
+  const bool exact_known = run.truth_map && run.header.kind == "run" && run.T_world_map;
+  const std::vector<uint8_t> visible = [&] {
+    std::vector<uint8_t> cells;
+    if (run.visible) {
+      for (const float value : run.visible->value) cells.push_back(value > 0.5F ? 1 : 0);
+    }
+    return cells;
+  }();
+  slam::OccupancyMap shown = *run.map;
+  if (exact_known) {
+    slam::GridGeometry around =
+        run.truth_map->geometry;  // half a metre more, for what is mapped beyond the walls
+    const int margin = static_cast<int>(0.5 / around.cell_m);
+    around.x_min_m -= margin * around.cell_m;
+    around.y_min_m -= margin * around.cell_m;
+    around.cols += 2 * margin;
+    around.rows += 2 * margin;
+    shown = resampled_map(*run.map, place.T_frame_map, around);
+  }
+  const cv::Mat pair = draw_map_pair(shown, exact_known ? run.truth_map : std::nullopt, visible);
+  save_figure(run, "map.png", pair);
+  const std::string caption = exact_known
+                                  ? "Left: what SLAM made; right: exact, from the geometry of the scene."
+                                  : "No exact map is known for this run.";
+  std::string html = figure(picture(pair, kPlanBytes, "Estimated occupancy map and the exact one"),
+                            "Final occupancy map.", caption + " (Paper: Fig. 4 simulated, Fig. 9 real.)");
+  if (!exact_known || visible.empty()) return html;
+  const cv::Mat difference = draw_map_difference(
+      resampled_map(*run.map, place.T_frame_map, run.truth_map->geometry), *run.truth_map, visible);
+  save_figure(run, "map_difference.png", difference);
+  return html + figure(picture(difference, kPlanBytes, "Differences of the estimated from the exact map"),
+                       "Where the map is wrong.", "Cell by cell, where the true trajectory could see.");
+}
+
+std::string scene_section(const RunFolder& run) {
+  const cv::Mat preview = left_by_run(run, "preview.png");
+  if (preview.empty()) return note("The run left no picture of the scene and plan.");
+  return figure(picture(preview, kPlanBytes, "Top view of the scene with the planned trajectory"),
+                "Model of the scene and planned trajectory.", "(Paper: Fig. 5.)");
+}
+
+// ---- plots over time
+
+std::string error_plots(const RunFolder& run, const TopView& view) {
+  const ErrorSeries errors = error_series(view, first_stamp_ns(run));
+  if (errors.t_s.empty()) return note("Without a true trajectory there are no errors over time.");
+  const auto lost = lost_spans_s(run.frames);
+  const auto over_time = [&](const char* what, const char* unit, const std::vector<double>& y,
+                             const char* colour) {
+    return plot({.description = std::string(what) + " over time",
+                 .x_label = "time [s]",
+                 .y_label = std::string(what) + " [" + unit + "]",
+                 .x = errors.t_s,
+                 .series = {{what, colour, y}},
+                 .bands = lost,
+                 .band_name = "lost"});
+  };
+  return figure(over_time("position error", "m", errors.position_m, "var(--s1)") +
+                    over_time("heading error", "°", errors.yaw_deg, "var(--s3)"),
+                "Errors over time.",
+                "After alignment of the whole trajectory; heading as estimated minus true.");
+}
+
+std::string count_plot(const RunFolder& run) {
+  Plot counts{.description = "Tracked features and inliers over time",
+              .x_label = "time [s]",
+              .y_label = "features",
+              .x = frame_times_s(run.frames),
+              .series = {},
+              .bands = lost_spans_s(run.frames),
+              .band_name = "lost"};
+  const auto add = [&](const char* column, const char* name, const char* colour) {
+    const auto& values = run.frames.column(column);
+    if (!values.empty()) counts.series.push_back({name, colour, values});
+  };
+  add("features_tracked", "tracked", "var(--s1)");
+  add("inliers", "inliers", "var(--s5)");
+  if (counts.series.empty() || counts.x.empty()) return note("The run left no counts of features.");
+  return figure(plot(counts), "Features.", "Tracked into each frame, and those that agreed with the motion.");
+}
+
+std::string time_plot(const RunFolder& run) {
+  Plot times{.description = "Time of each stage over the run, stacked",
+             .x_label = "time [s]",
+             .y_label = "SLAM time [ms]",
+             .x = frame_times_s(run.frames),
+             .series = {},
+             .bands = {},
+             .band_name = ""};
+  for (size_t stage = 0; stage < slam::kStageCount; ++stage) {
+    const std::string name = slam::name_of(static_cast<slam::Stage>(stage));
+    const auto& values = run.frames.column(name + "_ms");
+    if (!values.empty()) times.series.push_back({name, stage_colour(stage), values, true});
+  }
+  if (times.series.empty() || times.x.empty()) return note("The run left no stage times.");
+  return figure(plot(times), "Time of the stages.", "Stacked; peaks are key frames.");
+}
+
+std::string page(const RunFolder& run) {
+  const RunHeader& header = run.header;
+  const PlacedRun place = placed(run);
+  const std::string name = escape_html(header.name);
+  std::string html =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
+      "<title>" +
+      name + " – groundloop</title><style>" + kReportStyle + "</style></head>\n<body><header>";
+  const std::string kind = header.kind == "replay" ? "replay of a recorded sequence" : "simulated run";
+  html += "<p class=\"kicker\">groundloop " + escape_html(header.version) + " · " + kind + "</p><h1>" + name +
+          "</h1>";
+  html += "<p class=\"summary\">" + escape_html(header.summary) + "</p>";
+  html += verdict(header) + tiles(run) + "</header>\n<main>";
+  html += "<section><h2>What the cameras saw</h2>" + frame_section(run) + "</section>\n";
+  html += "<section><h2>Trajectory and cloud</h2>" + top_view_section(run, place.view) + "</section>\n";
+  html += "<section><h2>Occupancy map</h2>" + map_section(run, place) + "</section>\n";
+  if (header.kind == "run") html += "<section><h2>Scene and plan</h2>" + scene_section(run) + "</section>\n";
+  html += "<section><h2>Over time</h2>" + error_plots(run, place.view) + count_plot(run) + time_plot(run) +
+          "</section>\n";
+  html += "<section><h2>Numbers</h2>" + expectation_table(header) + "<div class=\"tables\">" +
+          metric_tables(run.metrics) + "</div>" + stage_table(run.frames) + "</section>\n";
+  html += "<section><h2>Where it comes from</h2>" + provenance_table(header) + "</section></main>\n";
+  html +=
+      "<footer>Made by groundloop from the run folder alone. Figures correspond to those of the paper that "
+      "preset <code>paper</code> follows.</footer></body></html>\n";
+  return html;
+}
+
+}  // namespace
+
+std::string write_report(const std::string& run_dir) {
+  const RunFolder run = load_run_folder(run_dir);
+  std::error_code error;
+  fs::create_directories(fs::path(run_dir) / "figures", error);
+  if (error) {
+    throw InputError(Problem{run_dir, 0, "figures", error.message(), "a folder that can be written to"});
+  }
+  const std::string file = (fs::path(run_dir) / "report.html").string();
+  const std::string html = page(run);
+  slam::write_file_atomically(file, [&](std::ostream& out) { out << html; });
+  return file;
+}
+
+}  // namespace groundloop::bench
