@@ -139,6 +139,11 @@ seed: -3
   EXPECT_THAT(
       lines,
       ElementsAre(
+          "test.yaml:1: format: 2: wanted 1, the only format this version reads",
+          "test.yaml:2: name: a/b: wanted letters, digits, dots, dashes and underscores: it names the run "
+          "folder",
+          "test.yaml:3: world: models/rome.xml: wanted an MJCF file that exists (looked for " +
+              (folder_ / "models" / "rome.xml").string() + ")",
           "test.yaml:4: robot.strat: unknown key: wanted one of: model, odometry, start (did you mean "
           "start?)",
           "test.yaml:7: plan.speed_mps: fast: wanted a number from 0.01 to 1.2",
@@ -148,12 +153,7 @@ seed: -3
           "stop_s, look",
           "test.yaml:11: plan.segments[1].arc.radius_m: -1: wanted a number from 0 to 1000",
           "test.yaml:11: plan.segments[1].arc.angle_deg: missing: wanted a number from -36000 to 36000",
-          "test.yaml:12: seed: -3: wanted a whole number",
-          "test.yaml:1: format: 2: wanted 1, the only format this version reads",
-          "test.yaml:2: name: a/b: wanted letters, digits, dots, dashes and underscores: it names the run "
-          "folder",
-          "test.yaml:3: world: models/rome.xml: wanted an MJCF file that exists (looked for " +
-              (folder_ / "models" / "rome.xml").string() + ")"));
+          "test.yaml:12: seed: -3: wanted a whole number"));
 }
 
 TEST_F(ScenarioFiles, WhatDoesNotExistYetIsRefusedClearly) {
@@ -165,11 +165,11 @@ TEST_F(ScenarioFiles, WhatDoesNotExistYetIsRefusedClearly) {
 faults: [{at_s: 12, for_s: 3, wheel_slip: {left: 0.3}}]
 )"),
       ElementsAre(
-          "test.yaml:10: faults[0]: a fault: wanted an empty list: faults are not supported yet",
+          "test.yaml:8: plan.feedback: slam: wanted one of: plan, odometry, truth (steering by SLAM is "
+          "not supported yet)",
           "test.yaml:9: plan.segments[0].look: {pan_deg: 30}: wanted no look segment: none of the robots "
           "has a pan-tilt head yet",
-          "test.yaml:8: plan.feedback: slam: wanted one of: plan, odometry, truth (steering by SLAM is "
-          "not supported yet)"));
+          "test.yaml:10: faults[0]: a fault: wanted an empty list: faults are not supported yet"));
 }
 
 TEST_F(ScenarioFiles, ExpectationsAreChecked) {
@@ -181,11 +181,11 @@ TEST_F(ScenarioFiles, ExpectationsAreChecked) {
   map.f1: {min: 0.9, max: 0.5}
   map.iou: {}
 )"),
-      ElementsAre("test.yaml:9: expect.map.f1: {min: 0.9, max: 0.5}: wanted min (0.9) not above max (0.5)",
-                  "test.yaml:10: expect.map.iou: {}: wanted bounds: min and/or max",
-                  AllOf(HasSubstr("test.yaml:8: expect.trajectory.ate_rms_m: unknown key: wanted one of: "),
+      ElementsAre("test.yaml:8: expect.outcome: won: wanted one of: tracked, lost",
+                  AllOf(HasSubstr("test.yaml:9: expect.trajectory.ate_rms_m: unknown key: wanted one of: "),
                         EndsWith("(did you mean trajectory.ate_rmse_m?)")),
-                  "test.yaml:7: expect.outcome: won: wanted one of: tracked, lost"));
+                  "test.yaml:10: expect.map.f1: {min: 0.9, max: 0.5}: wanted min (0.9) not above max (0.5)",
+                  "test.yaml:11: expect.map.iou: {}: wanted bounds: min and/or max"));
 }
 
 TEST_F(ScenarioFiles, AnEmptyPlanAndAMissingOne) {
