@@ -127,10 +127,8 @@ std::optional<PlanarFit> fit_planar(const PointTruth& truth, const slam::Traject
   return fit;
 }
 
-Metrics planar_metrics(const PointTruth& truth, const slam::Trajectory& T_map_left) {
-  const auto fit = fit_planar(truth, T_map_left);
-  if (!fit) return {};
-  return {{"trajectory.planar_rmse_m", fit->rmse_m}, {"trajectory.planar_max_m", fit->max_m}};
+Metrics planar_metrics(const PlanarFit& fit) {
+  return {{"trajectory.planar_rmse_m", fit.rmse_m}, {"trajectory.planar_max_m", fit.max_m}};
 }
 
 }  // namespace groundloop::bench

@@ -41,7 +41,7 @@ struct PlanarFit {
 /// @return none with fewer than three poses or an empty truth
 std::optional<PlanarFit> fit_planar(const PointTruth& truth, const slam::Trajectory& T_map_left);
 
-/// trajectory.planar_rmse_m and trajectory.planar_max_m; empty when there is no fit.
-Metrics planar_metrics(const PointTruth& truth, const slam::Trajectory& T_map_left);
+/// trajectory.planar_rmse_m and trajectory.planar_max_m.
+Metrics planar_metrics(const PlanarFit& fit);
 
 }  // namespace groundloop::bench

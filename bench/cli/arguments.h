@@ -1,0 +1,41 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/runner/options.h"
+#include "slam/types/config.h"
+
+namespace groundloop::bench {
+
+/// Adds an option whose value is one of an enum's names; the help shows them with the default.
+template <class E>
+CLI::Option* add_choice(CLI::App& command, const std::string& name, E& value, const std::string& help) {
+  std::vector<std::string> names;
+  std::string current;
+  for (const auto& [candidate, text] : EnumNames<E>::names) {
+    names.emplace_back(text);
+    if (candidate == value) current = text;
+  }
+  const auto set = [&value](const std::string& given) {
+    for (const auto& [candidate, text] : EnumNames<E>::names) {
+      if (given == text) value = candidate;
+    }
+  };
+  return command.add_option_function<std::string>(name, set, help)
+      ->check(CLI::IsMember(names))
+      ->default_str(current)
+      ->type_name("NAME");
+}
+
+/// "7" or "3..12", both ends included.
+/// @throws InputError
+SeedRange parse_seeds(const std::string& text);
+
+/// "key=value"; the value may hold further equals signs.
+/// @throws InputError
+sim::Override parse_override(const std::string& text);
+
+}  // namespace groundloop::bench

@@ -1,0 +1,11 @@
+#include "bench/cli/commands.h"
+
+namespace groundloop::bench {
+
+void add_commands(CLI::App& app, CommandAction& action) {
+  add_eval_command(app, action);
+  add_validate_command(app, action);
+  add_list_command(app, action);
+}
+
+}  // namespace groundloop::bench

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace groundloop::bench {
+
+/// What the chosen subcommand does; returns the exit code.
+using CommandAction = std::function<int()>;
+
+/// Adds every subcommand. When one is parsed, `action` becomes its doing.
+void add_commands(CLI::App& app, CommandAction& action);
+
+void add_eval_command(CLI::App& app, CommandAction& action);
+void add_validate_command(CLI::App& app, CommandAction& action);
+void add_list_command(CLI::App& app, CommandAction& action);
+
+}  // namespace groundloop::bench

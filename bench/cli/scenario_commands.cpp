@@ -1,0 +1,107 @@
+// groundloop validate and groundloop list: scenarios, without running them.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "bench/cli/commands.h"
+#include "bench/cli/scenario_check.h"
+#include "bench/verdict/verdict.h"
+#include "sim/scenario/scenario.h"
+
+namespace groundloop::bench {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json as_json(const std::vector<Problem>& problems) {
+  ordered_json list = ordered_json::array();
+  for (const Problem& p : problems) {
+    list.push_back(
+        {{"file", p.file}, {"line", p.line}, {"key", p.key}, {"value", p.value}, {"wanted", p.wanted}});
+  }
+  return list;
+}
+
+void print_problems(const std::vector<Problem>& problems) {
+  for (const Problem& problem : problems) fmt::print(stderr, "{}\n", problem.text());
+}
+
+int validate(const std::vector<std::string>& files, bool json) {
+  Outcome outcome = Outcome::kPass;
+  ordered_json answer = ordered_json::array();
+  for (const std::string& file : files) {
+    const std::vector<Problem> problems = problems_of_scenario(file);
+    if (!problems.empty()) outcome = Outcome::kBadInput;
+    if (json) {
+      answer.push_back({{"file", file}, {"valid", problems.empty()}, {"problems", as_json(problems)}});
+    } else if (problems.empty()) {
+      fmt::print("{}: valid\n", file);
+    } else {
+      print_problems(problems);
+    }
+  }
+  if (json) fmt::print("{}\n", answer.dump(2));
+  return exit_code(outcome);
+}
+
+std::vector<std::string> scenario_files(const std::string& dir) {
+  std::error_code error;
+  std::vector<std::string> files;
+  for (std::filesystem::directory_iterator it(dir, error), end; !error && it != end; it.increment(error)) {
+    if (it->is_regular_file() && it->path().extension() == ".yaml") files.push_back(it->path().string());
+  }
+  if (error) throw InputError(Problem{dir, 0, "", error.message(), "a folder of scenario files"});
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+int list(const std::string& dir, bool json) {
+  Outcome outcome = Outcome::kPass;
+  std::vector<sim::Scenario> scenarios;
+  for (const std::string& file : scenario_files(dir)) {
+    try {
+      scenarios.push_back(sim::load_scenario(file));
+    } catch (const InputError& error) {
+      print_problems(error.problems());
+      outcome = Outcome::kBadInput;
+    }
+  }
+  if (json) {
+    ordered_json answer = ordered_json::array();
+    for (const sim::Scenario& s : scenarios) {
+      answer.push_back({{"name", s.name}, {"file", s.file}, {"summary", s.summary}});
+    }
+    fmt::print("{}\n", answer.dump(2));
+    return exit_code(outcome);
+  }
+  size_t width = 0;
+  for (const sim::Scenario& s : scenarios) width = std::max(width, s.name.size());
+  for (const sim::Scenario& s : scenarios) fmt::print("{:<{}}  {}\n", s.name, width, s.summary);
+  return exit_code(outcome);
+}
+
+}  // namespace
+
+void add_validate_command(CLI::App& app, CommandAction& action) {
+  CLI::App* command = app.add_subcommand("validate", "check scenarios: keys, models and the planned path");
+  const auto files = std::make_shared<std::vector<std::string>>();
+  const auto json = std::make_shared<bool>(false);
+  command->add_option("scenario", *files, "scenario files")->required()->type_name("FILE");
+  command->add_flag("--json", *json, "print JSON");
+  command->callback([=, &action] { action = [=] { return validate(*files, *json); }; });
+}
+
+void add_list_command(CLI::App& app, CommandAction& action) {
+  CLI::App* command = app.add_subcommand("list", "scenarios of a folder, with their summaries");
+  const auto dir = std::make_shared<std::string>("scenarios");
+  const auto json = std::make_shared<bool>(false);
+  command->add_option("dir", *dir, "folder")->capture_default_str()->type_name("DIR");
+  command->add_flag("--json", *json, "print JSON");
+  command->callback([=, &action] { action = [=] { return list(*dir, *json); }; });
+}
+
+}  // namespace groundloop::bench
