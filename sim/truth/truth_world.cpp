@@ -183,8 +183,11 @@ slam::GridGeometry TruthWorld::bounds(double cell_m) const {
 std::vector<uint8_t> TruthWorld::visible_cells(const slam::GridGeometry& grid, const slam::StereoRig& rig,
                                                const std::vector<slam::Pose>& T_world_left, double z_min_m,
                                                double z_max_m, double max_range_m) const {
-  std::vector<uint8_t> visible(grid.cells(), 0);
-  const auto mark = [&](int col, int row) { visible[grid.index(col, row)] = 1; };
+  std::vector<uint8_t> sight(grid.cells(), kUnseen);
+  const auto cross = [&](int col, int row) {
+    uint8_t& seen = sight[grid.index(col, row)];
+    seen = std::max<uint8_t>(seen, kCrossed);
+  };
   for (const slam::Pose& T : T_world_left) {
     const Vector3d origin = T.translation();
     for (int j = 0; j < kVisibilityRows; ++j) {
@@ -199,16 +202,16 @@ std::vector<uint8_t> TruthWorld::visible_cells(const slam::GridGeometry& grid, c
         const auto band = in_band(origin.z(), ray.z(), z_min_m, z_max_m, end_m);
         if (!band) continue;
         walk_cells(grid, (origin + band->first * ray).head<2>(), (origin + band->second * ray).head<2>(),
-                   mark);
+                   cross);
         if (hit && band->second == end_m) {
           const Vector3d behind = origin + end_m * ray - 2 * kTouch_m * hit->surface.normal;
           const int col = grid.col_of(behind.x()), row = grid.row_of(behind.y());
-          if (grid.contains(col, row)) mark(col, row);
+          if (grid.contains(col, row)) sight[grid.index(col, row)] = kSurfaceSeen;
         }
       }
     }
   }
-  return visible;
+  return sight;
 }
 
 std::optional<std::string> TruthWorld::collision(double x_m, double y_m, double yaw_rad,

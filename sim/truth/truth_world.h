@@ -20,6 +20,13 @@ struct RayHit {
   int geom = -1;  ///< MuJoCo geom id
 };
 
+/// What the camera saw of a cell, as values of visible_cells().
+enum CellSight : uint8_t {
+  kUnseen = 0,
+  kCrossed = 1,      ///< a ray went through it
+  kSurfaceSeen = 2,  ///< a ray ended on geometry in it
+};
+
 /// A geom seen from above: what a figure of the scene draws.
 struct Outline {
   int geom = -1;                         ///< MuJoCo geom id
@@ -66,9 +73,10 @@ class TruthWorld {
   /// multiples of the cell size. Without bounded geometry it has no cells.
   slam::GridGeometry bounds(double cell_m) const;
 
-  /// Cells of `geometry` that the left camera saw from these poses, true where a pixel ray crosses the cell
-  /// between the two heights before, or at, its first hit and not farther than max_range_m along the ray. A
-  /// seen surface marks the cell behind it, which holds the geometry. 128 x 40 rays an image, spread evenly.
+  /// What the left camera saw of each cell of `geometry` from these poses, as CellSight: not 0 where a pixel
+  /// ray crosses the cell between the two heights before, or at, its first hit and not farther than
+  /// max_range_m along the ray. A surface counts for the cell behind it, which holds the geometry. 128 x 40
+  /// rays an image, spread evenly.
   std::vector<uint8_t> visible_cells(const slam::GridGeometry& geometry, const slam::StereoRig& rig,
                                      const std::vector<slam::Pose>& T_world_left, double z_min_m,
                                      double z_max_m, double max_range_m) const;

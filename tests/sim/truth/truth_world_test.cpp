@@ -315,9 +315,7 @@ class VisibleCells : public testing::Test {
   double max_range_m_ = 3.5;
   std::vector<uint8_t> seen_ =
       truth_.visible_cells(grid_, small_rig(), {StereoRig::level_camera({0, 0, 1})}, 0.02, 2, max_range_m_);
-  bool seen(double x_m, double y_m) const {
-    return seen_[grid_.index(grid_.col_of(x_m), grid_.row_of(y_m))] != 0;
-  }
+  int seen(double x_m, double y_m) const { return seen_[grid_.index(grid_.col_of(x_m), grid_.row_of(y_m))]; }
 };
 
 TEST_F(VisibleCells, EverythingInTheWedgeUpToTheWallAndNothingBehind) {
@@ -346,8 +344,10 @@ TEST_F(VisibleCells, EverythingInTheWedgeUpToTheWallAndNothingBehind) {
 
 TEST_F(VisibleCells, SurfaceCellOfTheWallIsSeen) {
   // the face lies on a border of cells; the wall's own cells are those behind it
-  for (double y_m = -0.475; y_m < 0.5; y_m += 0.05) EXPECT_TRUE(seen(kFace_m + 0.025, y_m)) << y_m;
-  EXPECT_FALSE(seen(kFace_m + 0.075, 0));
+  for (double y_m = -0.475; y_m < 0.5; y_m += 0.05)
+    EXPECT_EQ(seen(kFace_m + 0.025, y_m), kSurfaceSeen) << y_m;
+  EXPECT_EQ(seen(kFace_m + 0.075, 0), kUnseen);
+  EXPECT_EQ(seen(kFace_m - 0.025, 0), kCrossed);
 }
 
 TEST_F(VisibleCells, HeightBandCutsTheRays) {
