@@ -30,7 +30,7 @@ int stroke(double width) { return std::max(1, cvRound(width * Canvas::kScale)); 
 
 double font_scale(double size) { return size * Canvas::kScale / kCapital; }
 
-int font_stroke(double size) { return std::max(1, cvRound(size * Canvas::kScale / 8.0)); }
+int font_stroke(double size) { return std::max(1, cvRound(size * Canvas::kScale / 10.0)); }
 
 }  // namespace
 
@@ -214,7 +214,7 @@ void PlanView::draw_axes(Canvas& canvas) const {
   for (double i = std::ceil(low.x() / step); i * step <= high.x(); ++i) {
     const cv::Point2d at = (*this)(i * step, low.y());
     canvas.line(at, {at.x, bottom + 6}, palette::kSoftInk, 1);
-    if (at.x > panel_.x + panel_.width - 45) continue;  // the unit stands there
+    if (at.x > panel_.x + panel_.width - 70) continue;  // the unit stands there
     canvas.text({at.x, bottom + 23}, tick_text(i * step, step), kSize, palette::kSoftInk, Align::kCentre);
   }
   for (double i = std::ceil(low.y() / step); i * step <= high.y(); ++i) {

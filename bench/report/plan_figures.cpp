@@ -87,7 +87,7 @@ void draw_cloud(Canvas& canvas, const PlanView& view, std::vector<DrawnPoint> cl
 
 /// Key frames, thinned where they would hide each other.
 void draw_key_frames(Canvas& canvas, const PlanView& view, const std::vector<slam::Pose>& key_frames) {
-  constexpr double kSpacing_px = 13, kTurn_rad = 0.2;
+  constexpr double kSpacing_px = 24, kTurn_rad = 0.3;
   std::optional<PlanPose> last;
   for (const slam::Pose& T_frame_left : key_frames) {
     const PlanPose pose = heading_of_camera(T_frame_left);
@@ -96,7 +96,7 @@ void draw_key_frames(Canvas& canvas, const PlanView& view, const std::vector<sla
       const double turned_rad = std::abs(std::remainder(pose.yaw_rad - last->yaw_rad, 2 * M_PI));
       if (moved_px < kSpacing_px && turned_rad < kTurn_rad) continue;
     }
-    draw_heading(canvas, view, pose, 22, palette::kEstimate);
+    draw_heading(canvas, view, pose, 20, palette::kKeyFrame);
     last = pose;
   }
 }
@@ -107,7 +107,7 @@ void draw_height_bar(Canvas& canvas, const PlanView& view, const Heights& height
   const cv::Rect bar(kWidth - 74, cvRound(view.panel().y) + 36, 18, height);
   draw_colour_bar(canvas, bar, colours);
   canvas.frame(bar, palette::kSoftInk, 1);
-  canvas.text({bar.x - 4.0, bar.y - 14.0}, "height [m]", 10, palette::kInk, Align::kLeft);
+  canvas.text({kWidth - 8.0, bar.y - 14.0}, "height [m]", 10, palette::kInk, Align::kRight);
   const double range_m = heights.high_m - heights.low_m, step = nice_step_above(range_m / 7);
   for (double i = std::ceil(heights.low_m / step - 1e-9); i * step <= heights.high_m + 1e-9; ++i) {
     const double y = bar.y + bar.height * (1 - (i * step - heights.low_m) / range_m);
@@ -122,7 +122,7 @@ std::vector<LegendItem> legend_of(const TopView& view) {
   if (!view.truth.empty()) items.push_back({Mark::kLine, palette::kTruth, "true trajectory"});
   if (!view.estimate.empty()) items.push_back({Mark::kLine, palette::kEstimate, "estimated trajectory"});
   if (!view.key_frames.empty())
-    items.push_back({Mark::kHeading, palette::kEstimate, "key frame and heading"});
+    items.push_back({Mark::kHeading, palette::kKeyFrame, "key frame and heading"});
   if (!view.cloud.empty()) {
     items.push_back(
         {Mark::kDisc, Colour(0x21918c), fmt::format("point cloud ({} points)", view.cloud.size())});

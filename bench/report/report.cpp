@@ -186,17 +186,18 @@ std::string error_plots(const RunFolder& run, const TopView& view) {
   if (errors.t_s.empty()) return note("Without a true trajectory there are no errors over time.");
   const auto lost = lost_spans_s(run.frames);
   const auto over_time = [&](const char* what, const char* unit, const std::vector<double>& y,
-                             const char* colour) {
+                             const char* colour, double min_span) {
     return plot({.description = std::string(what) + " over time",
                  .x_label = "time [s]",
                  .y_label = std::string(what) + " [" + unit + "]",
                  .x = errors.t_s,
                  .series = {{what, colour, y}},
                  .bands = lost,
-                 .band_name = "lost"});
+                 .band_name = "lost",
+                 .min_y_span = min_span});
   };
-  return figure(over_time("position error", "m", errors.position_m, "var(--s1)") +
-                    over_time("heading error", "°", errors.yaw_deg, "var(--s3)"),
+  return figure(over_time("position error", "m", errors.position_m, "var(--s1)", 0.01) +
+                    over_time("heading error", "°", errors.yaw_deg, "var(--s3)", 0.2),
                 "Errors over time.",
                 "After alignment of the whole trajectory; heading as estimated minus true.");
 }

@@ -34,7 +34,7 @@ std::vector<std::vector<double>> upper_edges(const Plot& plot) {
   return edges;
 }
 
-Axis y_axis(const std::vector<std::vector<double>>& edges) {
+Axis y_axis(const std::vector<std::vector<double>>& edges, double min_span) {
   double low = 0, high = 0;
   for (const auto& edge : edges) {
     for (const double y : edge) {
@@ -43,10 +43,12 @@ Axis y_axis(const std::vector<std::vector<double>>& edges) {
       high = std::max(high, y);
     }
   }
-  if (high - low < 1e-12) high = low + 1;
+  if (low < 0) low = std::min(low, -min_span / 2);
+  high = std::max(high, low < 0 ? min_span / 2 : min_span);
+  if (high == low) high = 1;
   const double step = nice_step_above((high - low) / 6);
-  return {std::floor(low / step + 1e-9) * step, std::ceil(high / step - 1e-9) * step, kHeight - kBottom,
-          kTop};
+  return {std::floor(low < 0 ? low / step - 0.02 : 0) * step, std::ceil(high / step + 0.02) * step,
+          kHeight - kBottom, kTop};
 }
 
 Axis x_axis(const std::vector<double>& x) {
@@ -150,7 +152,7 @@ std::string legend(const Plot& plot) {
 
 std::string svg_plot(const Plot& plot) {
   const auto edges = upper_edges(plot);
-  const Axis x_of = x_axis(plot.x), y_of = y_axis(edges);
+  const Axis x_of = x_axis(plot.x), y_of = y_axis(edges, plot.min_y_span);
   const auto kept = kept_points(plot.x.size(), edges);
 
   std::string svg = fmt::format("<svg class=\"plot\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">",

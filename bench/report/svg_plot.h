@@ -22,6 +22,7 @@ struct Plot {
   std::vector<PlotSeries> series;
   std::vector<std::pair<double, double>> bands;  ///< spans of x with a red ground, as lost frames
   std::string band_name;
+  double min_y_span = 0;  ///< smallest range of y to show, so that rounding noise does not fill the plot
 };
 
 /// A plot as inline SVG, 920 x 300 units, that scales with the page. Its text and lines take the page's

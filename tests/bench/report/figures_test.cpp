@@ -1,0 +1,188 @@
+#include "bench/report/figures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/core.hpp>
+
+#include "bench/report/canvas.h"
+#include "bench/report/preview.h"
+#include "tests/bench/report/synthetic_run.h"
+
+namespace groundloop::bench {
+namespace {
+
+bool is_near(const cv::Vec3b& a, const cv::Vec3b& b, int tolerance) {
+  return std::abs(a[0] - b[0]) <= tolerance && std::abs(a[1] - b[1]) <= tolerance &&
+         std::abs(a[2] - b[2]) <= tolerance;
+}
+
+int count_near(const cv::Mat& image, Colour colour, int tolerance = 12) {
+  int count = 0;
+  for (auto it = image.begin<cv::Vec3b>(); it != image.end<cv::Vec3b>(); ++it) {
+    count += is_near(*it, colour.bgr(), tolerance) ? 1 : 0;
+  }
+  return count;
+}
+
+bool equal(const cv::Mat& a, const cv::Mat& b) {
+  return a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0;
+}
+
+TEST(PlanView, KeepsOneScaleAndPutsNorthUp) {
+  const PlanView view({{-1, -2}, {9, 3}}, {50, 20}, 1000, 800);
+  EXPECT_DOUBLE_EQ(view.px_per_m(), 100);
+  EXPECT_EQ(view(-1, 3), cv::Point2d(50, 20));
+  EXPECT_EQ(view(9, -2), cv::Point2d(1050, 520));
+  EXPECT_TRUE(view.metres(150, 120).isApprox(Eigen::Vector2d(0, 2)));
+}
+
+TEST(PlanView, CentresATallScene) {
+  const PlanView view({{0, 0}, {1, 10}}, {0, 0}, 1000, 500);
+  EXPECT_DOUBLE_EQ(view.px_per_m(), 50);
+  EXPECT_EQ(view(0.5, 10), cv::Point2d(500, 0));
+}
+
+TEST(NiceStep, IsOneTwoOrFive) {
+  EXPECT_DOUBLE_EQ(nice_step_above(0.7), 1);
+  EXPECT_DOUBLE_EQ(nice_step_above(1.2), 2);
+  EXPECT_DOUBLE_EQ(nice_step_above(0.021), 0.05);
+  EXPECT_DOUBLE_EQ(nice_step_above(60), 100);
+  EXPECT_EQ(tick_text(-1e-17, 0.05), "0.00");
+  EXPECT_EQ(tick_text(40, 20), "40");
+}
+
+TEST(DrawTracked, MarksEachKindInItsColour) {
+  const cv::Mat image =
+      draw_tracked(SyntheticRun::left_image(), SyntheticRun::features(), SyntheticRun::history());
+  EXPECT_EQ(image.cols, 1280);
+  EXPECT_EQ(image.type(), CV_8UC3);
+  // rings, squares and crosses are hollow or thin: the mark of feature 1 (inlier, at (72, 30)) has radius 5
+  // px
+  const cv::Point2d inlier((72 + 0.5) * 2, (30 + 0.5) * 2);
+  const cv::Vec3b on_ring = image.at<cv::Vec3b>(cvRound(inlier.y), cvRound(inlier.x + 5));
+  EXPECT_GT(on_ring[1], 180);
+  EXPECT_LT(on_ring[2], 120);
+  const cv::Mat none = draw_tracked(SyntheticRun::left_image(), {});
+  EXPECT_GT(count_near(image, Colour(0xff4b5c)), count_near(none, Colour(0xff4b5c)) + 100);
+  EXPECT_GT(count_near(image, Colour(0xffc83d)), count_near(none, Colour(0xffc83d)) + 100);
+  EXPECT_GT(count_near(image, Colour(0x4aa8ff)), 100) << "tails";
+  EXPECT_TRUE(equal(
+      image, draw_tracked(SyntheticRun::left_image(), SyntheticRun::features(), SyntheticRun::history())));
+}
+
+TEST(DrawDisparity, UnknownIsDarkAndNearIsRed) {
+  const cv::Mat image = draw_disparity(SyntheticRun::disparity(), SyntheticRun::rig());
+  const cv::Vec3b unknown = image.at<cv::Vec3b>(480, 100), far = image.at<cv::Vec3b>(5, 800),
+                  near = image.at<cv::Vec3b>(950, 800);
+  EXPECT_LT(unknown[0] + unknown[1] + unknown[2], 120);
+  EXPECT_GT(far[0], far[2] + 50);
+  EXPECT_GT(near[2], near[0] + 50);
+}
+
+TEST(DrawDisparity, ABlindPictureIsAllDark) {
+  const cv::Mat blind(240, 320, CV_16SC1, cv::Scalar(-16));
+  const cv::Mat image = draw_disparity(blind, SyntheticRun::rig());
+  EXPECT_TRUE(is_near(image.at<cv::Vec3b>(480, 640), Colour(0x14181f).bgr(), 2));
+}
+
+TEST(DrawTopView, ShowsTheEstimateWhereItIs) {
+  TopView view;
+  view.outline = {{"floor", {{0, 0}, {10, 0}, {10, 6}, {0, 6}}}};
+  for (int i = 0; i <= 10; ++i) {
+    slam::Pose T = slam::StereoRig::level_camera({2 + 0.6 * i, 3, 0.3});
+    view.estimate.push_back({i, T});
+  }
+  const cv::Mat image = draw_top_view(view);
+  EXPECT_EQ(image.cols, 1600);
+  // the line is at half the height of the scene, the only red of the picture outside the legend
+  int top = image.rows, bottom = 0;
+  for (int v = 0; v < image.rows - 60; ++v) {
+    for (int u = 0; u < image.cols; ++u) {
+      if (!is_near(image.at<cv::Vec3b>(v, u), palette::kEstimate.bgr(), 10)) continue;
+      top = std::min(top, v);
+      bottom = std::max(bottom, v);
+    }
+  }
+  const double middle = 22 + (image.rows - 22 - 84) / 2.0;
+  EXPECT_NEAR(top, middle, 3);
+  EXPECT_NEAR(bottom, middle, 3);
+}
+
+TEST(DrawTopView, IsTheSameTwiceAndNeedsNothing) {
+  TopView view;
+  EXPECT_EQ(draw_top_view(view).cols, 1600);
+  view.outline = SyntheticRun::outline();
+  for (int i = 0; i < SyntheticRun::kFrames; ++i) {
+    view.truth.push_back({i, SyntheticRun::T_world_left(i)});
+    view.key_frames.push_back(SyntheticRun::T_world_left(i));
+    view.cloud.push_back(
+        {Eigen::Vector3f(0.03F * static_cast<float>(i), 1, 0.01F * static_cast<float>(i)), 0.1F});
+  }
+  EXPECT_TRUE(equal(draw_top_view(view), draw_top_view(view)));
+}
+
+TEST(DrawTopView, FarPointsDoNotShrinkTheScene) {
+  TopView view;
+  view.estimate = {{0, slam::Pose::Identity()}};
+  for (int i = 0; i < 1000; ++i) {
+    const auto a = static_cast<float>(i) * 0.1F;
+    view.cloud.push_back({Eigen::Vector3f(5 * std::cos(a), 5 * std::sin(a), 1), 0.05F});
+  }
+  const cv::Mat without = draw_top_view(view);
+  view.cloud[0].p = {5000, 5000, 1};
+  EXPECT_EQ(draw_top_view(view).size(), without.size());
+}
+
+TEST(ResampledMap, UndoesTheRotationOfTheMap) {
+  const auto exact = SyntheticRun::exact_map();
+  const auto moved =
+      resampled_map(SyntheticRun::estimated_map(), SyntheticRun::T_world_map(), exact.geometry);
+  for (int row = 0; row < exact.geometry.rows; ++row) {
+    for (int col = 0; col < exact.geometry.cols; ++col) {
+      const Eigen::Vector2d p = exact.geometry.centre_m(col, row);
+      const bool inside = p.x() > 0 && p.x() < 12 && p.y() > 0 && p.y() < 8;
+      if (!inside) continue;
+      ASSERT_EQ(moved.at(col, row), exact.at(col, row)) << "at " << p.transpose();
+    }
+  }
+  EXPECT_EQ(moved.at(0, 0), slam::OccupancyMap::kUnknown);
+}
+
+TEST(DrawMaps, ShowTheirCellsToScale) {
+  slam::OccupancyMap map{{0.1, 0, 0, 100, 50}, std::vector<float>(5000, 0.0F)};
+  for (int row = 10; row < 30; ++row) {
+    for (int col = 20; col < 60; ++col) map.value[map.geometry.index(col, row)] = 1;
+  }
+  const cv::Mat pair = draw_map_pair(map, map);
+  // each panel is 708 px for 10.6 m; the block covers 4 m x 2 m of both
+  const double px_per_m = 708 / 10.6;
+  EXPECT_NEAR(count_near(pair, Colour(0x16202c), 4), 2 * 8 * px_per_m * px_per_m, 2500);
+}
+
+TEST(DrawMaps, DifferencesAreCountedWhereVisible) {
+  slam::OccupancyMap exact{{0.1, 0, 0, 100, 50}, std::vector<float>(5000, 0.0F)};
+  slam::OccupancyMap estimate = exact;
+  std::vector<uint8_t> visible(5000, 1);
+  for (int row = 0; row < 50; ++row) {
+    for (int col = 0; col < 20; ++col) estimate.value[exact.geometry.index(col, row)] = 1;  // false occupied
+    for (int col = 20; col < 30; ++col) visible[exact.geometry.index(col, row)] = 0;
+    for (int col = 30; col < 40; ++col) estimate.value[exact.geometry.index(col, row)] = 0.5F;  // missed
+  }
+  const cv::Mat image = draw_map_difference(estimate, exact, visible);
+  const double px2_per_m2 = std::pow(1500 / 10.6, 2);
+  EXPECT_NEAR(count_near(image, Colour(0xe0334a), 2) / px2_per_m2, 10, 0.2);
+  EXPECT_NEAR(count_near(image, Colour(0x7fa8e8), 2) / px2_per_m2, 5, 0.2);
+
+  visible.pop_back();
+  EXPECT_THROW(draw_map_difference(estimate, exact, visible), std::invalid_argument);
+}
+
+TEST(DrawPreview, WorksFromAStartAlone) {
+  EXPECT_EQ(draw_preview({}, {}, {1, 2, 0}).cols, 1600);
+  const cv::Mat image = draw_preview(SyntheticRun::outline(), {{1, 1, 0}, {11, 1, 0}}, {1, 1, 0});
+  EXPECT_GT(count_near(image, Colour(0x1f5fd0)), 1000);
+}
+
+}  // namespace
+}  // namespace groundloop::bench
