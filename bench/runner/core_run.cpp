@@ -1,0 +1,29 @@
+#include "bench/runner/core_run.h"
+
+#include "bench/runner/prefetch_source.h"
+
+namespace groundloop::bench {
+
+CoreRun run_core(slam::StereoSource& source, slam::Pipeline& core, const std::string& name,
+                 std::optional<int64_t> frames, const FrameObserver& observe, const JobControl& control) {
+  CoreRun run;
+  const int64_t total = std::min(frames.value_or(INT64_MAX), source.size().value_or(INT64_MAX));
+  PrefetchSource ahead(source);
+  for (int64_t done = 0; done < total; ++done) {
+    if (control.stop != nullptr && control.stop->load()) {
+      run.interrupted = true;
+      return run;
+    }
+    const std::optional<slam::StereoFrame> frame = ahead.next();
+    if (!frame) break;
+    slam::FrameResult result = core.process(*frame);
+    observe(*frame, result);
+    result.features = {};
+    run.frames.push_back(std::move(result));
+    if (control.progress) control.progress(name, done + 1, total == INT64_MAX ? 0 : total);
+  }
+  core.finish();
+  return run;
+}
+
+}  // namespace groundloop::bench

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "sim/head/head.h"
+#include "sim/render/renderer.h"
+#include "sim/scenario/scenario.h"
+#include "sim/simulation/simulation.h"
+#include "sim/world/world.h"
+#include "slam/source/stereo_source.h"
+
+namespace groundloop::bench {
+
+/// What the bench knows of a pair and the core must not.
+struct FrameTruth {
+  int64_t stamp_ns = 0;
+  slam::Pose T_world_body = slam::Pose::Identity();
+  slam::Pose T_world_left = slam::Pose::Identity();
+  slam::Pose T_odom_body = slam::Pose::Identity();
+  double render_ms = 0;  ///< both images, read back
+};
+
+/// The simulator as a source of stereo pairs: physics, rendering and sensor noise. The truth of each pair
+/// goes past the core, into truth().
+class SimulatedSource : public slam::StereoSource {
+ public:
+  /// @param frames  deliver only the first so many pairs
+  /// @throws InputError when the scenario's models do not fit together or its plan runs into something
+  SimulatedSource(const sim::Scenario& scenario, const sim::World& world, const sim::HeadModel& head,
+                  std::optional<int64_t> frames);
+
+  const slam::StereoRig& rig() const override { return rig_; }
+  std::optional<int64_t> size() const override { return size_; }
+  /// All calls must come from one thread, the first of which makes the renderer.
+  std::optional<slam::StereoFrame> next() override;
+
+  /// Truth of pair `index`. May be read from another thread once that pair was delivered to it.
+  const FrameTruth& truth(int64_t index) const { return truth_[static_cast<size_t>(index)]; }
+  /// Known once the first pair was delivered.
+  const sim::RendererInfo& renderer_info() const { return renderer_info_; }
+  double planned_length_m() const { return simulation_.planned_length_m(); }
+
+ private:
+  const sim::Scenario& scenario_;
+  const sim::World& world_;
+  const sim::HeadModel& head_;
+  const slam::StereoRig rig_;
+  sim::Simulation simulation_;
+  const int64_t size_;
+  std::unique_ptr<sim::Renderer> renderer_;
+  sim::RendererInfo renderer_info_;
+  std::vector<FrameTruth> truth_;
+  int64_t delivered_ = 0;
+};
+
+}  // namespace groundloop::bench

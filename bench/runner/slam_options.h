@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/scenario/scenario.h"
+#include "slam/pipeline/options.h"
+
+namespace groundloop::bench {
+
+/// Options of the core: the scenario's preset with its `set` on top; the scenario's seed goes into the
+/// core's.
+/// @throws InputError naming file, line, option, value and what was wanted
+slam::SlamOptions slam_options(const sim::Scenario& scenario);
+
+/// The same of a preset named on a command line, with `--set` options of the core.
+slam::SlamOptions slam_options(const std::string& preset, const std::vector<sim::Override>& set);
+
+}  // namespace groundloop::bench
