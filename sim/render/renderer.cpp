@@ -1,10 +1,12 @@
 #include "sim/render/renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <opencv2/core.hpp>
 #include <stdexcept>
 #include <vector>
 
+#include "sim/render/culling.h"
 #include "sim/render/gl_context.h"
 
 namespace groundloop::sim {
@@ -77,9 +79,18 @@ struct Renderer::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
+  void update(const mjData& data) {
+    mjvCamera camera;  // replaced for every image
+    mjv_defaultCamera(&camera);
+    // MuJoCo reads the state only, but takes it as non-const.
+    mjv_updateScene(&model, const_cast<mjData*>(&data), &option, nullptr, &camera, mjCAT_ALL, &scene);
+    geoms.assign(scene.geoms, scene.geoms + scene.ngeom);
+  }
+
   void render(const Camera& camera) {
     gl->make_current();
     aim(camera);
+    keep_visible(camera);
     mjr_render(viewport(), &scene, &context);
   }
 
@@ -100,6 +111,38 @@ struct Renderer::Impl {
     }
   }
 
+  /// Leaves the geoms in the scene that this image can show: MuJoCo draws whatever it is given. A geom behind
+  /// the camera may still throw a shadow into the image.
+  void keep_visible(const Camera& camera) {
+    const double scale = 1 / camera.focal_px;
+    const std::array<HalfSpace, 4> pyramid =
+        view_pyramid(camera.T_world_camera.translation(), camera.T_world_camera.linear(),
+                     {-scale * (camera.cx_px + 0.5), scale * (width_px - 0.5 - camera.cx_px),
+                      -scale * (camera.cy_px + 0.5), scale * (height_px - 0.5 - camera.cy_px)});
+    const std::vector<HalfSpace> mirrors = mirror_planes();
+    const auto visible = [&](const mjvGeom& geom) {
+      if (scene.flags[mjRND_SHADOW] || geom.objtype != mjOBJ_GEOM || model.geom_rbound[geom.objid] <= 0)
+        return true;
+      return may_be_seen(Eigen::Map<const Eigen::Vector3f>(geom.pos).cast<double>(),
+                         model.geom_rbound[geom.objid], pyramid, mirrors);
+    };
+    scene.ngeom =
+        static_cast<int>(std::copy_if(geoms.begin(), geoms.end(), scene.geoms, visible) - scene.geoms);
+  }
+
+  /// The faces in which MuJoCo may reflect: the +z sides of planes and boxes.
+  std::vector<HalfSpace> mirror_planes() const {
+    std::vector<HalfSpace> mirrors;
+    for (const mjvGeom& geom : geoms) {
+      if (!scene.flags[mjRND_REFLECTION] || geom.reflectance <= 0) continue;
+      const Eigen::Vector3d n(geom.mat[2], geom.mat[5], geom.mat[8]);
+      const double thickness_m = geom.type == mjGEOM_BOX ? geom.size[2] : 0;
+      const Eigen::Vector3d centre = Eigen::Map<const Eigen::Vector3f>(geom.pos).cast<double>();
+      mirrors.push_back({n, n.dot(centre) + thickness_m});
+    }
+    return mirrors;
+  }
+
   mjrRect viewport() const { return {0, 0, width_px, height_px}; }
 
   const int width_px, height_px;
@@ -109,6 +152,7 @@ struct Renderer::Impl {
   const mjvOption option;
   mjvScene scene;
   mjrContext context;
+  std::vector<mjvGeom> geoms;      ///< of the whole state; scene.geoms holds those of one image
   std::vector<unsigned char> rgb;  ///< as OpenGL delivers it: rows bottom-up
 };
 
@@ -117,13 +161,7 @@ Renderer::Renderer(const World& world, int width_px, int height_px, const Render
 
 Renderer::~Renderer() = default;
 
-void Renderer::update_scene(const mjData& data) {
-  // MuJoCo reads the state only, but takes it as non-const.
-  mjvCamera camera;
-  mjv_defaultCamera(&camera);
-  mjv_updateScene(&impl_->model, const_cast<mjData*>(&data), &impl_->option, nullptr, &camera, mjCAT_ALL,
-                  &impl_->scene);
-}
+void Renderer::update_scene(const mjData& data) { impl_->update(data); }
 
 void Renderer::render_grey(const Camera& camera, cv::Mat& grey) {
   impl_->render(camera);
