@@ -8,6 +8,7 @@
 #include "sim/robot/drive.h"
 #include "sim/robot/odometry.h"
 #include "sim/robot/planned_path.h"
+#include "sim/simulation/collision_focus.h"
 #include "sim/simulation/path_check.h"
 #include "sim/simulation/state_pool.h"
 #include "sim/truth/truth_world.h"
@@ -64,6 +65,7 @@ struct Simulation::Impl {
   int64_t step_ns, period_ns, exposures;
 
   World::DataPtr state;
+  CollisionFocus focus;
   StatePool pool;
   WheelController wheels;
   Odometry odometry;
@@ -87,6 +89,7 @@ Simulation::Impl::Impl(const World& world_, const HeadModel& head, const Scenari
       exposures(static_cast<int64_t>(std::floor(path.duration_s() * 1e9 / static_cast<double>(period_ns))) +
                 1),
       state(world.make_data()),
+      focus(world),
       pool(model),
       wheels(drive.limits, 0, 0),
       odometry(scenario.robot.odometry, drive.limits, scenario.seed, 0, 0) {
@@ -101,7 +104,8 @@ Simulation::Impl::Impl(const World& world_, const HeadModel& head, const Scenari
 /// Lets the robot sink into its contacts before time starts.
 void Simulation::Impl::settle() {
   const slam::Pose before = body_pose(world, *state);
-  while (state->time < kSettle_s) mj_step(&model, state.get());
+  focus.update(*state);
+  while (state->time < kSettle_s) mj_step(&focus.model(), state.get());
   state->time = 0;
   const double moved_m = (body_pose(world, *state).translation() - before.translation()).norm();
   if (!(moved_m < kSettled_m)) {
@@ -126,7 +130,8 @@ void Simulation::Impl::step() {
   const WheelSpeeds speeds = wheels.command(wanted, left_rad, right_rad, step_s);
   state->ctrl[drive.left_actuator] = speeds.left_radps;
   state->ctrl[drive.right_actuator] = speeds.right_radps;
-  mj_step(&model, state.get());
+  focus.update(*state);
+  mj_step(&focus.model(), state.get());
   odometry.update(state->qpos[drive.left_qpos], state->qpos[drive.right_qpos]);
   ++steps;
 }
