@@ -152,10 +152,13 @@ void draw_legend(Canvas& canvas, cv::Point2d at, double right_limit, const std::
 
 void draw_colour_bar(Canvas& canvas, cv::Rect area, const std::vector<cv::Vec3b>& colours) {
   cv::Mat bar(area.size(), CV_8UC3);
-  for (int row = 0; row < area.height; ++row) {
-    const double fraction = 1 - (row + 0.5) / area.height;
-    bar.row(row).setTo(
-        cv::Scalar(colours[static_cast<size_t>(fraction * static_cast<double>(colours.size()))]));
+  const auto colour_at = [&](double fraction) {
+    return cv::Scalar(colours[static_cast<size_t>(fraction * static_cast<double>(colours.size()))]);
+  };
+  const bool upright = area.height > area.width;
+  for (int i = 0; i < std::max(area.width, area.height); ++i) {
+    (upright ? bar.row(i) : bar.col(i))
+        .setTo(colour_at(upright ? 1 - (i + 0.5) / area.height : (i + 0.5) / area.width));
   }
   canvas.picture(area.tl(), bar);
 }

@@ -76,7 +76,7 @@ struct LegendItem {
 /// Draws entries in a row from `at` (baseline of the first text) and wraps before `right_limit`.
 void draw_legend(Canvas& canvas, cv::Point2d at, double right_limit, const std::vector<LegendItem>& items);
 
-/// A vertical colour bar; `colours` from bottom to top.
+/// A colour bar along the longer side of the area; `colours` from bottom to top or from left to right.
 void draw_colour_bar(Canvas& canvas, cv::Rect area, const std::vector<cv::Vec3b>& colours);
 
 /// 256 BGR colours of an OpenCV colour map (cv::COLORMAP_...), lowest value first.

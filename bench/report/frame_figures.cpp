@@ -12,6 +12,8 @@ namespace groundloop::bench {
 namespace {
 
 constexpr double kWidth_px = 1280;
+constexpr int kLegendHeight = 60;
+constexpr double kTextSize = 16;
 constexpr Colour kInlier(0x2ee6a6);
 constexpr Colour kNew(0xffc83d);
 constexpr Colour kOutlier(0xff4b5c);
@@ -33,12 +35,12 @@ std::map<int64_t, std::vector<cv::Point2d>> tails_of(
 
 void draw_mark(Canvas& canvas, cv::Point2d at, const slam::FeatureObservation& f) {
   if (f.is_new) {
-    canvas.frame({at.x - 4, at.y - 4, 8, 8}, kNew, 1.5);
+    canvas.frame({at.x - 6, at.y - 6, 12, 12}, kNew, 2);
   } else if (f.is_inlier) {
-    canvas.circle(at, 5, kInlier, 1.5);
+    canvas.circle(at, 7, kInlier, 2);
   } else {
-    canvas.line({at.x - 5, at.y - 5}, {at.x + 5, at.y + 5}, kOutlier, 1.8);
-    canvas.line({at.x - 5, at.y + 5}, {at.x + 5, at.y - 5}, kOutlier, 1.8);
+    canvas.line({at.x - 6, at.y - 6}, {at.x + 6, at.y + 6}, kOutlier, 2.2);
+    canvas.line({at.x - 6, at.y + 6}, {at.x + 6, at.y - 6}, kOutlier, 2.2);
   }
 }
 
@@ -54,22 +56,25 @@ void draw_feature_legend(Canvas& canvas, double top, const std::vector<slam::Fea
     inliers += !f.is_new && f.is_inlier ? 1 : 0;
   }
   const int outliers = static_cast<int>(features.size()) - fresh - inliers;
-  const double middle = top + 22, baseline = top + 28;
-  cv::Point2d at(20, middle);
-  const auto entry = [&](const slam::FeatureObservation& sample, const std::string& text) {
-    draw_mark(canvas, at, sample);
-    canvas.text({at.x + 14, baseline}, text, 11, kPaleText);
-    at.x += 14 + Canvas::text_width(text, 11) + 36;
+  const double middle = top + kLegendHeight / 2.0, baseline = middle + kTextSize / 2;
+  cv::Point2d at(24, middle);
+  const auto name = [&](double from, const std::string& text) {
+    canvas.text({at.x + from, baseline}, text, kTextSize, kPaleText);
+    at.x += from + Canvas::text_width(text, kTextSize) + 34;
   };
-  entry({.is_inlier = true}, fmt::format("tracked inlier ({})", inliers));
-  entry({}, fmt::format("tracked outlier ({})", outliers));
-  entry({.is_new = true}, fmt::format("new ({})", fresh));
-  canvas.line({at.x - 8, middle}, {at.x + 14, middle}, kPaleText, 1.5);
-  canvas.text({at.x + 22, baseline}, "disparity / 4", 11, kPaleText);
-  at.x += 22 + Canvas::text_width("disparity / 4", 11) + 36;
-  if (!with_tails) return;
-  canvas.line({at.x - 8, middle}, {at.x + 14, middle}, kTail, 2);
-  canvas.text({at.x + 22, baseline}, "motion in the frames before", 11, kPaleText);
+  const auto mark = [&](const slam::FeatureObservation& sample, const std::string& text) {
+    draw_mark(canvas, at, sample);
+    name(16, text);
+  };
+  const auto stroke = [&](Colour colour, const std::string& text) {
+    canvas.line({at.x - 8, middle}, {at.x + 14, middle}, colour, 2.5);
+    name(22, text);
+  };
+  mark({.is_inlier = true}, fmt::format("inlier {}", inliers));
+  mark({}, fmt::format("outlier {}", outliers));
+  mark({.is_new = true}, fmt::format("new {}", fresh));
+  stroke(kPaleText, "disparity / 4");
+  if (with_tails) stroke(kTail, "motion before");
 }
 
 }  // namespace
@@ -78,7 +83,6 @@ cv::Mat draw_tracked(const cv::Mat& left, const std::vector<slam::FeatureObserva
                      const std::vector<std::vector<slam::FeatureObservation>>& history) {
   const double zoom = enlargement(left);
   const cv::Size size(cvRound(left.cols * zoom), cvRound(left.rows * zoom));
-  constexpr int kLegendHeight = 44;
   Canvas canvas(size.width, size.height + kLegendHeight, kDark);
 
   // the image, enlarged smoothly and a little darker so that the marks stand out
@@ -97,12 +101,12 @@ cv::Mat draw_tracked(const cv::Mat& left, const std::vector<slam::FeatureObserva
     std::vector<cv::Point2d> points;
     for (const auto& p : tail->second) points.push_back(pixel(p.x, p.y));
     points.push_back(pixel(f.u_left_px, f.v_left_px));
-    canvas.polyline(points, kTail, 1.8);
+    canvas.polyline(points, kTail, 2);
   }
   for (const auto& f : features) {
     const cv::Point2d at = pixel(f.u_left_px, f.v_left_px);
     if (f.has_right)
-      canvas.line(at, at - cv::Point2d((f.u_left_px - f.u_right_px) * zoom / 4, 0), colour_of(f), 1);
+      canvas.line(at, at - cv::Point2d((f.u_left_px - f.u_right_px) * zoom / 4, 0), colour_of(f), 1.5);
     draw_mark(canvas, at, f);
   }
   canvas.rectangle({0, static_cast<double>(size.height), static_cast<double>(size.width), kLegendHeight},
@@ -148,31 +152,31 @@ cv::Mat draw_disparity(const cv::Mat& disparity, const slam::StereoRig& rig) {
   auto colours = colour_map(cv::COLORMAP_TURBO);
   for (size_t i = 0; i < colours.size(); ++i) colours[i] = colours[std::min<size_t>(255, 18 + i * 237 / 255)];
 
-  constexpr int kBarWidth = 26, kMargin = 90;
-  Canvas canvas(size.width + kBarWidth + 2 * kMargin, size.height, palette::kPaper);
+  constexpr int kStripHeight = 108, kBarHeight = 24, kLeft = 64;
+  Canvas canvas(size.width, size.height + kStripHeight, palette::kPaper);
   cv::Mat image;
   cv::resize(coloured_disparity(disparity, end_px, colours), image, size, 0, 0, cv::INTER_NEAREST);
   canvas.picture({0, 0}, image);
 
-  const cv::Rect bar(size.width + kMargin - 10, 56, kBarWidth, size.height - 110);
+  const cv::Rect bar(kLeft, size.height + 42, size.width - kLeft - 250, kBarHeight);
   draw_colour_bar(canvas, bar, colours);
   canvas.frame(bar, palette::kSoftInk, 1);
-  canvas.text({bar.x - 10.0, 32}, "px", 12, palette::kInk, Align::kRight);
-  canvas.text({bar.x + kBarWidth + 10.0, 32}, "m", 12, palette::kInk);
+  const double above = bar.y - 10, below = bar.y + kBarHeight + kTextSize + 10;
+  canvas.text({14, above}, "px", kTextSize, palette::kInk);
+  canvas.text({14, below}, "m", kTextSize, palette::kInk);
   const double step = nice_step_above(end_px / 9);
   for (double i = 0; i * step <= end_px + 1e-9; ++i) {
-    const double d = i * step, y = bar.y + bar.height * (1 - d / end_px);
-    canvas.line({bar.x - 5.0, y}, {static_cast<double>(bar.x), y}, palette::kSoftInk, 1);
-    canvas.line({bar.x + bar.width + 0.0, y}, {bar.x + bar.width + 5.0, y}, palette::kSoftInk, 1);
-    canvas.text({bar.x - 10.0, y + 5.5}, tick_text(d, step), 11, palette::kSoftInk, Align::kRight);
+    const double d = i * step, x = bar.x + bar.width * d / end_px;
+    canvas.line({x, bar.y - 5.0}, {x, bar.y + kBarHeight + 5.0}, palette::kSoftInk, 1.5);
+    canvas.text({x, above}, tick_text(d, step), kTextSize, palette::kSoftInk, Align::kCentre);
     const double parallax = d - rig.disparity_at_infinity_px();
     const std::string metres =
-        parallax > 1e-6 ? fmt::format("{:.3g}", rig.fx_px * rig.baseline_m / parallax) : "inf";
-    canvas.text({bar.x + bar.width + 10.0, y + 5.5}, metres, 11, palette::kSoftInk);
+        parallax > 1e-6 ? fmt::format("{:.2g}", rig.fx_px * rig.baseline_m / parallax) : "inf";
+    canvas.text({x, below}, metres, kTextSize, palette::kSoftInk, Align::kCentre);
   }
-  const double bottom = size.height - 18.0;
-  canvas.rectangle({bar.x - 46.0, bottom - 13, 16, 16}, kDark);
-  canvas.text({bar.x - 24.0, bottom}, "unknown", 11, palette::kSoftInk);
+  canvas.rectangle({size.width - 190.0, static_cast<double>(bar.y), 40, kBarHeight}, kDark);
+  canvas.text({size.width - 140.0, bar.y + kBarHeight / 2 + kTextSize / 2}, "unknown", kTextSize,
+              palette::kSoftInk);
   return canvas.image();
 }
 

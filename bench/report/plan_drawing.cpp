@@ -51,8 +51,7 @@ void draw_heading(Canvas& canvas, const PlanView& view, const PlanPose& pose, do
   const cv::Point2d at = view(pose.x_m, pose.y_m);
   const cv::Point2d tip =
       at + cv::Point2d(std::cos(pose.yaw_rad) * length_px, -std::sin(pose.yaw_rad) * length_px);
-  canvas.line(at, tip, palette::kPaper, 3.5);
-  canvas.disc(at, 5, palette::kPaper);
+  canvas.disc(at, 4.5, palette::kPaper);
   canvas.line(at, tip, colour, 1.5);
   canvas.disc(at, 3.5, colour);
 }

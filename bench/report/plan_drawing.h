@@ -17,7 +17,7 @@ PlanPose heading_of_camera(const slam::Pose& T_frame_left);
 /// Footprints, the large ones below; with names where they fit.
 void draw_outline(Canvas& canvas, const PlanView& view, std::vector<Footprint> outline, bool with_names);
 
-/// A dot for position and a segment of `length_px` for heading, on a pale rim.
+/// A dot for position and a segment of `length_px` for heading.
 void draw_heading(Canvas& canvas, const PlanView& view, const PlanPose& pose, double length_px,
                   Colour colour);
 

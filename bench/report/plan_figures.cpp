@@ -87,7 +87,7 @@ void draw_cloud(Canvas& canvas, const PlanView& view, std::vector<DrawnPoint> cl
 
 /// Key frames, thinned where they would hide each other.
 void draw_key_frames(Canvas& canvas, const PlanView& view, const std::vector<slam::Pose>& key_frames) {
-  constexpr double kSpacing_px = 24, kTurn_rad = 0.3;
+  constexpr double kSpacing_px = 40, kTurn_rad = 0.3;
   std::optional<PlanPose> last;
   for (const slam::Pose& T_frame_left : key_frames) {
     const PlanPose pose = heading_of_camera(T_frame_left);
@@ -96,7 +96,7 @@ void draw_key_frames(Canvas& canvas, const PlanView& view, const std::vector<sla
       const double turned_rad = std::abs(std::remainder(pose.yaw_rad - last->yaw_rad, 2 * M_PI));
       if (moved_px < kSpacing_px && turned_rad < kTurn_rad) continue;
     }
-    draw_heading(canvas, view, pose, 20, palette::kKeyFrame);
+    draw_heading(canvas, view, pose, 18, palette::kKeyFrame);
     last = pose;
   }
 }

@@ -90,7 +90,7 @@ std::string tiles(const RunFolder& run) {
        {"trajectory.lost_frames", "lost frames"},
        {"map.f1", "map F1"},
        {"timing.slam_ms_median", "SLAM a pair, median"},
-       {"timing.realtime_factor", "speed"}}};
+       {"timing.realtime_factor", "speed over real time"}}};
   std::string html = "<dl class=\"tiles\">";
   html += fmt::format("<div><dt>stereo pairs</dt><dd>{}</dd></div>", run.header.frames);
   for (const auto& [metric, title] : kTiles) {

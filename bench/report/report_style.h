@@ -40,7 +40,7 @@ figcaption b{color:var(--ink)}
 .plot{display:block;width:100%;min-width:640px;height:auto}
 .svg-text{fill:var(--soft);font:12px system-ui,-apple-system,"Segoe UI",Roboto,"DejaVu Sans",sans-serif}
 .svg-grid{stroke:var(--edge)}.svg-axis{stroke:var(--soft)}
-.tables{columns:2 480px;column-gap:20px}
+.tables{columns:2 480px;column-gap:20px;margin-bottom:20px}
 .card{background:var(--card);border:1px solid var(--edge);border-radius:12px;padding:6px 16px 10px;margin:0 0 20px;
 break-inside:avoid;overflow-x:auto}
 table{border-collapse:collapse;width:100%;font-size:.92rem}

@@ -26,7 +26,7 @@ constexpr std::array<Unit, 11> kUnits = {{{"_deg_per_m", "°/m"},
                                           {"_deg", "°"},
                                           {"_px", "px"},
                                           {"_rad", "rad"},
-                                          {"_factor", "× real time"},
+                                          {"_factor", "×"},
                                           {"_m", "m"},
                                           {"_s", "s"}}};
 

@@ -60,7 +60,7 @@ TEST(DrawTracked, MarksEachKindInItsColour) {
   // rings, squares and crosses are hollow or thin: the mark of feature 1 (inlier, at (72, 30)) has radius 5
   // px
   const cv::Point2d inlier((72 + 0.5) * 2, (30 + 0.5) * 2);
-  const cv::Vec3b on_ring = image.at<cv::Vec3b>(cvRound(inlier.y), cvRound(inlier.x + 5));
+  const cv::Vec3b on_ring = image.at<cv::Vec3b>(cvRound(inlier.y), cvRound(inlier.x + 7));
   EXPECT_GT(on_ring[1], 180);
   EXPECT_LT(on_ring[2], 120);
   const cv::Mat none = draw_tracked(SyntheticRun::left_image(), {});
