@@ -14,6 +14,8 @@ using CommandAction = std::function<int()>;
 /// Adds every subcommand. When one is parsed, `action` becomes its doing.
 void add_commands(CLI::App& app, CommandAction& action);
 
+void add_run_command(CLI::App& app, CommandAction& action);
+void add_replay_command(CLI::App& app, CommandAction& action);
 void add_eval_command(CLI::App& app, CommandAction& action);
 void add_validate_command(CLI::App& app, CommandAction& action);
 void add_list_command(CLI::App& app, CommandAction& action);
