@@ -99,6 +99,31 @@ std::optional<std::pair<double, double>> in_band(double z, double dz, double z_m
   return std::pair(from, to);
 }
 
+/// What rays see of the cells of a grid.
+struct SightMap {
+  const slam::GridGeometry& grid;
+  std::vector<uint8_t> cells;  ///< CellSight
+  double z_min_m, z_max_m;
+
+  void mark(int col, int row, CellSight sight) {
+    uint8_t& cell = cells[grid.index(col, row)];
+    cell = std::max<uint8_t>(cell, sight);
+  }
+
+  /// A ray of unit direction that ends after length_m, on a surface when there is a normal.
+  void add(const Vector3d& origin, const Vector3d& ray, double length_m, const Vector3d* normal) {
+    const auto band = in_band(origin.z(), ray.z(), z_min_m, z_max_m, length_m);
+    if (!band) return;
+    walk_cells(grid, (origin + band->first * ray).head<2>(), (origin + band->second * ray).head<2>(),
+               [this](int col, int row) { mark(col, row, kCrossed); });
+    if (normal == nullptr || band->second < length_m) return;
+    const Vector3d behind = origin + length_m * ray - 2 * kTouch_m * *normal;
+    const int col = grid.col_of(behind.x()), row = grid.row_of(behind.y());
+    const bool upright = std::abs(normal->z()) < std::numbers::sqrt2 / 2;
+    if (grid.contains(col, row)) mark(col, row, upright ? kFaceSeen : kCrossed);
+  }
+};
+
 }  // namespace
 
 struct TruthWorld::Impl {
@@ -183,13 +208,8 @@ slam::GridGeometry TruthWorld::bounds(double cell_m) const {
 std::vector<uint8_t> TruthWorld::visible_cells(const slam::GridGeometry& grid, const slam::StereoRig& rig,
                                                const std::vector<slam::Pose>& T_world_left, double z_min_m,
                                                double z_max_m, double max_range_m) const {
-  std::vector<uint8_t> sight(grid.cells(), kUnseen);
-  const auto cross = [&](int col, int row) {
-    uint8_t& seen = sight[grid.index(col, row)];
-    seen = std::max<uint8_t>(seen, kCrossed);
-  };
+  SightMap sight{grid, std::vector<uint8_t>(grid.cells(), kUnseen), z_min_m, z_max_m};
   for (const slam::Pose& T : T_world_left) {
-    const Vector3d origin = T.translation();
     for (int j = 0; j < kVisibilityRows; ++j) {
       for (int i = 0; i < kVisibilityColumns; ++i) {
         // centres of equal tiles; the image reaches half a pixel beyond its first and last pixel centres
@@ -197,21 +217,13 @@ std::vector<uint8_t> TruthWorld::visible_cells(const slam::GridGeometry& grid, c
         const double v_px = (j + 0.5) * rig.height_px / kVisibilityRows - 0.5;
         const Vector3d ray_left((u_px - rig.cx_px) / rig.fx_px, (v_px - rig.cy_px) / rig.fy_px, 1);
         const Vector3d ray = T.linear() * ray_left.normalized();
-        const auto hit = impl_->scene.cast(origin, ray, max_range_m);
-        const double end_m = hit ? hit->surface.t : max_range_m;
-        const auto band = in_band(origin.z(), ray.z(), z_min_m, z_max_m, end_m);
-        if (!band) continue;
-        walk_cells(grid, (origin + band->first * ray).head<2>(), (origin + band->second * ray).head<2>(),
-                   cross);
-        if (hit && band->second == end_m) {
-          const Vector3d behind = origin + end_m * ray - 2 * kTouch_m * hit->surface.normal;
-          const int col = grid.col_of(behind.x()), row = grid.row_of(behind.y());
-          if (grid.contains(col, row)) sight[grid.index(col, row)] = kSurfaceSeen;
-        }
+        const auto hit = impl_->scene.cast(T.translation(), ray, max_range_m);
+        sight.add(T.translation(), ray, hit ? hit->surface.t : max_range_m,
+                  hit ? &hit->surface.normal : nullptr);
       }
     }
   }
-  return sight;
+  return sight.cells;
 }
 
 std::optional<std::string> TruthWorld::collision(double x_m, double y_m, double yaw_rad,

@@ -23,8 +23,8 @@ struct RayHit {
 /// What the camera saw of a cell, as values of visible_cells().
 enum CellSight : uint8_t {
   kUnseen = 0,
-  kCrossed = 1,      ///< a ray went through it
-  kSurfaceSeen = 2,  ///< a ray ended on geometry in it
+  kCrossed = 1,   ///< a ray went through it, or ended on a level face (a desk top, or its underside)
+  kFaceSeen = 2,  ///< a ray ended on an upright face of geometry in it (steeper than 45 degrees)
 };
 
 /// A geom seen from above: what a figure of the scene draws.
@@ -75,7 +75,7 @@ class TruthWorld {
 
   /// What the left camera saw of each cell of `geometry` from these poses, as CellSight: not 0 where a pixel
   /// ray crosses the cell between the two heights before, or at, its first hit and not farther than
-  /// max_range_m along the ray. A surface counts for the cell behind it, which holds the geometry. 128 x 40
+  /// max_range_m along the ray. A face counts for the cell behind it, which holds the geometry. 128 x 40
   /// rays an image, spread evenly.
   std::vector<uint8_t> visible_cells(const slam::GridGeometry& geometry, const slam::StereoRig& rig,
                                      const std::vector<slam::Pose>& T_world_left, double z_min_m,

@@ -99,7 +99,7 @@ MapScore score_map(const OccupancyMap& truth, const std::vector<uint8_t>& sight,
     return grid.contains(col, row) && truth.at(col, row) > 0.5F;
   };
   const auto is_wall = [&](int col, int row) {
-    return truly_occupied(col, row) && sight[grid.index(col, row)] == sim::kSurfaceSeen;
+    return truly_occupied(col, row) && sight[grid.index(col, row)] == sim::kFaceSeen;
   };
 
   MapScore score;

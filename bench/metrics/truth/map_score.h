@@ -13,9 +13,10 @@ namespace groundloop::bench {
 
 /// An estimated occupancy map against the exact one, over the cells that the true trajectory could see.
 ///
-/// A scored cell is either a wall cell (truth occupied and its surface seen) or a free cell (truth free and
-/// crossed by a ray). Cells that hold geometry nobody saw (a desk top above rays that pass below it) are not
-/// scored. The estimate calls a cell occupied above 0.65, free below 0.35, else unknown; unknown is never
+/// A scored cell is either a wall cell (truth occupied, and an upright face of it seen) or a free cell (truth
+/// free and crossed by a ray). Not scored are occupied cells of which no upright face was seen: the inside of
+/// things, and columns under a desk top, which a robot sees through below and cannot tell from free space in
+/// a flat map. The estimate calls a cell occupied above 0.65, free below 0.35, else unknown; unknown is never
 /// occupied.
 struct MapScore {
   /// Strict counts over the scored cells, truth by call of the estimate.

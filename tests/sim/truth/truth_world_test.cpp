@@ -309,6 +309,11 @@ TEST(Bounds, CoverBoundedGeometryWithOneCellAround) {
 class VisibleCells : public testing::Test {
  protected:
   static constexpr double kFace_m = 2.0;
+  static Pose look_up() {  // by 20 degrees: the image reaches from 0 to 41 degrees
+    Pose T_world_left = StereoRig::level_camera({0, 0, 1});
+    T_world_left.linear() *= Eigen::AngleAxisd(20 * M_PI / 180, Vector3d::UnitX()).toRotationMatrix();
+    return T_world_left;
+  }
   Scene scene_{"<geom type='plane' size='0 0 1'/><geom type='box' size='0.1 0.5 1' pos='2.1 0 1'/>"};
   TruthWorld truth_ = truth_of(scene_);
   GridGeometry grid_{0.05, -1, -3, 120, 120};
@@ -344,10 +349,17 @@ TEST_F(VisibleCells, EverythingInTheWedgeUpToTheWallAndNothingBehind) {
 
 TEST_F(VisibleCells, SurfaceCellOfTheWallIsSeen) {
   // the face lies on a border of cells; the wall's own cells are those behind it
-  for (double y_m = -0.475; y_m < 0.5; y_m += 0.05)
-    EXPECT_EQ(seen(kFace_m + 0.025, y_m), kSurfaceSeen) << y_m;
+  for (double y_m = -0.475; y_m < 0.5; y_m += 0.05) EXPECT_EQ(seen(kFace_m + 0.025, y_m), kFaceSeen) << y_m;
   EXPECT_EQ(seen(kFace_m + 0.075, 0), kUnseen);
   EXPECT_EQ(seen(kFace_m - 0.025, 0), kCrossed);
+}
+
+TEST_F(VisibleCells, UndersideOfATopIsCrossedItsEdgeIsAFace) {
+  const Scene scene("<geom type='box' size='0.5 2 0.1' pos='1.5 0 1.6'/>");  // 0.5 m above the camera
+  const auto sight = truth_of(scene).visible_cells(grid_, small_rig(), {look_up()}, 0.02, 2, 6);
+  const auto at = [&](double x_m) { return sight[grid_.index(grid_.col_of(x_m), grid_.row_of(0.025))]; };
+  EXPECT_EQ(at(1.025), kFaceSeen);  // the front edge, at 27 to 35 degrees
+  for (double x_m = 1.075; x_m < 2; x_m += 0.05) EXPECT_EQ(at(x_m), kCrossed) << x_m;
 }
 
 TEST_F(VisibleCells, HeightBandCutsTheRays) {

@@ -25,12 +25,12 @@ OccupancyMap drawn(const std::vector<std::string>& picture, double x_min_m = 0, 
   return map;
 }
 
-/// 'S' surface seen, '-' crossed, ' ' unseen.
+/// 'S' face seen, '-' crossed, ' ' unseen.
 std::vector<uint8_t> sight_of(const std::vector<std::string>& picture) {
   std::vector<uint8_t> sight;
   for (auto line = picture.rbegin(); line != picture.rend(); ++line) {
     for (const char c : *line)
-      sight.push_back(c == 'S' ? sim::kSurfaceSeen : c == '-' ? sim::kCrossed : sim::kUnseen);
+      sight.push_back(c == 'S' ? sim::kFaceSeen : c == '-' ? sim::kCrossed : sim::kUnseen);
   }
   return sight;
 }
@@ -132,7 +132,7 @@ TEST_F(WallScore, GradedValuesCountInBrier) {
 }
 
 TEST_F(WallScore, UnseenGeometryIsNotScored) {
-  // row 0: the rays pass below what occupies the column (crossed, no surface seen)
+  // row 0: the rays pass below what occupies the column (crossed, no face seen)
   sight_ = sight_of({"----S   ", "----S   ", "----S   ", "------  "});
   const MapScore s = score({"....#???", "....#???", "....#???", "........"});
   EXPECT_EQ(s.wall_cells(), 3);
