@@ -6,11 +6,14 @@
 #include <cstdio>
 
 #include "bench/cli/commands.h"
+#include "bench/runner/core_run.h"
 #include "bench/verdict/verdict.h"
 #include "slam/types/config.h"
 
 namespace groundloop::bench {
 namespace {
+
+constexpr int kInterruptedExit = 130;  // as a shell reports a program that Ctrl-C ended
 
 int complain(Outcome outcome, const std::string& text) {
   fmt::print(stderr, "groundloop: {}\n", text);
@@ -32,7 +35,8 @@ int parse_and_run(int argc, char** argv) {
   CLI::App app("Simulation-in-the-loop test bench for stereo SLAM.", "groundloop");
   app.set_version_flag("--version", "groundloop " GROUNDLOOP_VERSION);
   app.require_subcommand(1);
-  app.footer("Exit codes: 0 pass, 1 the SLAM fell short, 2 bad input, 3 internal error.");
+  app.footer(
+      "Exit codes: 0 pass, 1 the SLAM fell short, 2 bad input, 3 internal error, 130 stopped by Ctrl-C.");
   CommandAction action;
   add_commands(app, action);
   check_command(app, argc, argv);
@@ -55,6 +59,9 @@ int run_cli(int argc, char** argv) {
   } catch (const InputError& error) {
     for (const Problem& problem : error.problems()) fmt::print(stderr, "{}\n", problem.text());
     return exit_code(Outcome::kBadInput);
+  } catch (const Interrupted& stopped) {
+    fmt::print(stderr, "groundloop: {}\n", stopped.what());
+    return kInterruptedExit;
   } catch (const std::exception& error) {
     return complain(Outcome::kInternalError, fmt::format("internal error: {}", error.what()));
   }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -92,7 +93,15 @@ JobControl control_with(Progress& progress) {
   return control;
 }
 
+/// Long runs must not end with a verdict that cannot be written.
+void check_writable(const std::string& file) {
+  if (!std::ofstream(file, std::ios::app)) {
+    throw InputError(Problem{"", 0, "--junit", file, "a file in a writable folder"});
+  }
+}
+
 int run_scenarios(const RunOptions& options) {
+  if (!options.junit.empty()) check_writable(options.junit);
   std::vector<RunOutcome> runs;
   {
     Progress progress;
