@@ -436,6 +436,30 @@ TEST_F(Collision, UnnamedGeomIsNamedByItsBody) {
   EXPECT_EQ(truth_of(scene, scene.body("robot")).collision(1, 0, 0, 0), "geom 1 (body desk)");
 }
 
+// A round robot and round obstacles: the distance at which they touch is the sum of the radii from every
+// side.
+TEST(CollisionOfRoundBodies, IsExactToAMicrometreFromEverySide) {
+  const Scene scene(
+      "<body name='robot'><freejoint/><geom type='cylinder' size='0.25 0.2' pos='0 0 0.2'/></body>"
+      "<geom name='tin' type='cylinder' size='0.3 0.2' pos='0 0 0.2'/>"
+      "<geom name='ball' type='sphere' size='0.3' pos='10 0 0.3'/>"
+      "<geom name='egg' type='ellipsoid' size='0.3 0.3 0.5' pos='20 0 0.35'/>"
+      "<geom name='pill' type='capsule' size='0.3 0.2' pos='30 0 0.4'/>");
+  const TruthWorld truth = truth_of(scene, scene.body("robot"));
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> in(-1, 1);
+  for (int i = 0; i < 1000; ++i) {
+    const double angle = M_PI * in(random), margin_m = 0.1 + 0.1 * in(random), yaw_rad = 3 * in(random);
+    const double x_m = 10 * (i % 4);
+    const auto at = [&](double distance_m) {
+      return truth.collision(x_m + distance_m * std::cos(angle), distance_m * std::sin(angle), yaw_rad,
+                             margin_m);
+    };
+    EXPECT_FALSE(at(0.55 + margin_m + 1e-6));
+    EXPECT_EQ(at(0.55 + margin_m - 1e-6), truth.geom_name(i % 4));
+  }
+}
+
 TEST(Footprints, AreSeenFromAbove) {
   const Scene scene(
       "<geom type='plane' size='0 0 1'/><geom name='lamp' type='box' size='1 1 .1' pos='0 0 2.5'/>"
