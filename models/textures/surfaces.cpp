@@ -59,8 +59,8 @@ cv::Mat floor_tiles(uint64_t key) {
       tile.convertTo(tile, -1, dice.uniform(0.86, 1.12));
     }
   }
-  speckle(canvas, 16000, 0, 2, 0.55, 1.35, dice);
-  speckle(canvas, 1800, 2, 5, 0.6, 1.3, dice);
+  speckle(canvas, 26000, 0, 1, 0.5, 1.4, dice);
+  speckle(canvas, 3200, 1, 3, 0.6, 1.3, dice);
   for (int i = 0; i < 26; ++i) {  // scratches and heel marks
     const cv::Point at(dice.integer(0, 1023), dice.integer(0, 1023));
     const cv::Point to = at + cv::Point(dice.integer(-70, 70), dice.integer(-70, 70));
