@@ -55,7 +55,8 @@ cv::Mat draw_top_view(const TopView& view);
 slam::OccupancyMap resampled_map(const slam::OccupancyMap& map, const slam::Pose& T_world_map,
                                  const slam::GridGeometry& geometry);
 
-/// The estimated map beside the exact one on the same scale (paper Fig. 4 and 9), 1600 px wide.
+/// The estimated map beside the exact one on the same scale (paper Fig. 4 and 9), 1600 px wide. Cells between
+/// the thresholds are grey, a little paler or darker as they lean.
 /// @param estimate  in the world frame (resampled_map)
 /// @param exact     none: the estimated map alone
 /// @param visible   of the exact map's cells, those that the true trajectory could see; empty: all. Others

@@ -46,7 +46,7 @@ std::string base64(const std::vector<uint8_t>& bytes) {
 
 std::string image_uri(const cv::Mat& bgr, size_t max_bytes) {
   std::vector<uint8_t> bytes;
-  cv::imencode(".png", bgr, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9});
+  cv::imencode(".png", bgr, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6});
   if (bytes.size() <= max_bytes) return "data:image/png;base64," + base64(bytes);
   cv::Mat image = bgr;
   for (int quality = 90;; quality -= 10) {

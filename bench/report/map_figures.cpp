@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <stdexcept>
 
 #include "bench/report/canvas.h"
@@ -49,16 +50,24 @@ struct CellPaint {
   bool above_grid = true;
 };
 
-CellPaint paint_of(float value) {
-  switch (cell_of(value)) {
-    case Cell::kFree:
-      return {kFreeColour, false};
-    case Cell::kOccupied:
-      return {kOccupiedColour};
-    case Cell::kUnknown:
-      break;
+Colour mixed(Colour from, Colour to, float part) {
+  uint32_t rgb = 0;
+  for (int shift = 0; shift <= 16; shift += 8) {
+    const auto a = static_cast<float>(from.rgb >> shift & 0xff),
+               b = static_cast<float>(to.rgb >> shift & 0xff);
+    rgb |= static_cast<uint32_t>(std::lround(a + part * (b - a))) << shift;
   }
-  return {kUnknownColour};
+  return Colour(rgb);
+}
+
+/// Decided cells have the full colour; an undecided one leans towards what it would become, up to half way.
+CellPaint paint_of(float value) {
+  const Cell cell = cell_of(value);
+  if (cell == Cell::kFree) return {kFreeColour, false};
+  if (cell == Cell::kOccupied) return {kOccupiedColour};
+  const float lean =
+      (value - OccupancyMap::kUnknown) / (OccupancyMap::kOccupiedAbove - OccupancyMap::kUnknown);
+  return {mixed(kUnknownColour, lean > 0 ? kOccupiedColour : kFreeColour, std::abs(lean) / 2)};
 }
 
 /// Gives every pixel of the panel the colour of its cell; `paint_at` gets col and row of a cell.

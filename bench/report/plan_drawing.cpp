@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace groundloop::bench {
 namespace {
@@ -16,14 +17,26 @@ double area_m2(const Footprint& footprint) {
   return std::abs(twice) / 2;
 }
 
-void draw_name(Canvas& canvas, const PlanView& view, const Footprint& footprint) {
+/// The simulator calls a part without a name "geom 46 (body north_desk)"; a reader wants "north desk".
+std::string shown_name(const std::string& name) {
+  const std::string before = "(body ";
+  const size_t body = name.find(before);
+  std::string shown = body == std::string::npos ? name : name.substr(body + before.size());
+  if (body != std::string::npos && shown.ends_with(')')) shown.pop_back();
+  std::replace(shown.begin(), shown.end(), '_', ' ');
+  return shown;
+}
+
+/// True when the name fits into the footprint and was written.
+bool draw_name(Canvas& canvas, const PlanView& view, const Footprint& footprint, const std::string& name) {
   constexpr double kSize = 9;
   Bounds bounds;
   for (const auto& p : footprint.polygon) bounds.add(p);
   const Eigen::Vector2d size_px = bounds.size() * view.px_per_m();
-  if (Canvas::text_width(footprint.name, kSize) + 8 > size_px.x() || size_px.y() < kSize + 8) return;
+  if (Canvas::text_width(name, kSize) + 8 > size_px.x() || size_px.y() < kSize + 8) return false;
   const cv::Point2d centre = view(Eigen::Vector2d((bounds.min + bounds.max) / 2));
-  canvas.text({centre.x, centre.y + kSize / 2}, footprint.name, kSize, palette::kSoftInk, Align::kCentre);
+  canvas.label({centre.x, centre.y + kSize / 2}, name, kSize, palette::kSoftInk, Align::kCentre);
+  return true;
 }
 
 }  // namespace
@@ -43,7 +56,11 @@ void draw_outline(Canvas& canvas, const PlanView& view, std::vector<Footprint> o
     canvas.polyline(corners, palette::kThingEdge, 1, true);
   }
   if (!with_names) return;
-  for (const Footprint& footprint : outline) draw_name(canvas, view, footprint);
+  std::set<std::string> written;  // each name once, on its largest part
+  for (const Footprint& footprint : outline) {
+    const std::string name = shown_name(footprint.name);
+    if (!written.contains(name) && draw_name(canvas, view, footprint, name)) written.insert(name);
+  }
 }
 
 void draw_heading(Canvas& canvas, const PlanView& view, const PlanPose& pose, double length_px,
@@ -64,12 +81,12 @@ void draw_path(Canvas& canvas, const PlanView& view, const slam::Trajectory& tra
 }
 
 void draw_place(Canvas& canvas, const PlanView& view, const PlanPose& pose, const std::string& name,
-                Colour colour) {
+                Colour colour, bool name_below) {
   const cv::Point2d at = view(pose.x_m, pose.y_m);
   canvas.disc(at, 9, palette::kPaper);
   canvas.circle(at, 9, colour, 3);
   canvas.disc(at, 4, colour);
-  canvas.label({at.x + 16, at.y - 10}, name, 13, colour);
+  canvas.label({at.x + 16, at.y + (name_below ? 23 : -10)}, name, 13, colour);
 }
 
 }  // namespace groundloop::bench

@@ -24,8 +24,8 @@ void draw_heading(Canvas& canvas, const PlanView& view, const PlanPose& pose, do
 void draw_path(Canvas& canvas, const PlanView& view, const slam::Trajectory& trajectory, Colour colour,
                double width);
 
-/// A ring with a name beside it.
+/// A ring with a name beside it, above or below.
 void draw_place(Canvas& canvas, const PlanView& view, const PlanPose& pose, const std::string& name,
-                Colour colour);
+                Colour colour, bool name_below);
 
 }  // namespace groundloop::bench

@@ -68,7 +68,7 @@ void draw_cloud(Canvas& canvas, const PlanView& view, std::vector<DrawnPoint> cl
   for (const DrawnPoint& point : cloud) {
     const double fraction = (point.p.z() - heights.low_m) / (heights.high_m - heights.low_m);
     const cv::Vec3b colour = colours[static_cast<size_t>(std::clamp(fraction, 0.0, 1.0) * 255)];
-    const double alpha = std::clamp(0.08 / std::max(1e-3, static_cast<double>(point.sigma_m)), 0.15, 0.7);
+    const double alpha = std::clamp(0.08 / std::max(1e-3, static_cast<double>(point.sigma_m)), 0.25, 0.75);
     const cv::Point2d at = view(point.p.x(), point.p.y());
     if (!view.panel().contains(at)) continue;
     const cv::Rect spot = cv::Rect(cvRound(at.x * Canvas::kScale) - kSide / 2,
@@ -150,8 +150,8 @@ cv::Mat draw_top_view(const TopView& view) {
   draw_key_frames(canvas, plan, view.key_frames);
   const slam::Trajectory& marked = view.truth.empty() ? view.estimate : view.truth;
   if (!marked.empty()) {
-    draw_place(canvas, plan, heading_of_camera(marked.back().T), "end", palette::kEnd);
-    draw_place(canvas, plan, heading_of_camera(marked.front().T), "start", palette::kStart);
+    draw_place(canvas, plan, heading_of_camera(marked.back().T), "end", palette::kEnd, true);
+    draw_place(canvas, plan, heading_of_camera(marked.front().T), "start", palette::kStart, false);
   }
   plan.draw_axes(canvas);
   draw_legend(canvas, {kLeft, kTop + plan.panel().height + 62}, kWidth - 20, legend_of(view));

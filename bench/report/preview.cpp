@@ -51,11 +51,11 @@ cv::Mat draw_preview(const std::vector<Footprint>& outline, const std::vector<Pl
   canvas.polyline(points, palette::kPaper, 7);
   canvas.polyline(points, kPath, 3);
   draw_arrows(canvas, view, path);
-  if (!path.empty()) draw_place(canvas, view, path.back(), "end", palette::kEnd);
+  if (!path.empty()) draw_place(canvas, view, path.back(), "end", palette::kEnd, true);
   const cv::Point2d at = view(start.x_m, start.y_m);
   canvas.line(at, at + cv::Point2d(std::cos(start.yaw_rad), -std::sin(start.yaw_rad)) * 34, palette::kStart,
               4);
-  draw_place(canvas, view, start, "start", palette::kStart);
+  draw_place(canvas, view, start, "start", palette::kStart, false);
 
   view.draw_axes(canvas);
   using Mark = LegendItem::Mark;

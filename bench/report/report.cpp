@@ -96,7 +96,8 @@ std::string tiles(const RunFolder& run) {
   for (const auto& [metric, title] : kTiles) {
     const auto found = run.metrics.find(metric);
     if (found == run.metrics.end()) continue;
-    html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", title, value_with_unit(metric, found->second));
+    html +=
+        fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", title, value_with_unit(metric, found->second, 3));
   }
   return html + "</dl>";
 }

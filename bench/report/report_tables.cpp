@@ -39,10 +39,10 @@ std::string unit_of(const std::string& metric) {
   return "";
 }
 
-std::string number_text(double value) {
+std::string number_text(double value, int digits) {
   if (!std::isfinite(value)) return "not finite";
   if (value == std::floor(value) && std::abs(value) < 1e9) return fmt::format("{:.0f}", value);
-  return std::abs(value) >= 1000 ? fmt::format("{:.0f}", value) : fmt::format("{:.4g}", value);
+  return std::abs(value) >= 1000 ? fmt::format("{:.0f}", value) : fmt::format("{:.{}g}", value, digits);
 }
 
 std::string bound_text(const JudgedMetric& judged) {
@@ -124,10 +124,10 @@ std::string key_value_row(const std::string& key, const std::string& value) {
 
 }  // namespace
 
-std::string value_with_unit(const std::string& metric, double value) {
+std::string value_with_unit(const std::string& metric, double value, int digits) {
   const std::string unit = unit_of(metric);
-  if (unit.empty()) return number_text(value);
-  return number_text(value) + (unit == "°" ? "" : "\u00a0") + unit;
+  if (unit.empty()) return number_text(value, digits);
+  return number_text(value, digits) + (unit == "°" ? "" : "\u00a0") + unit;
 }
 
 std::string judged_sentence(const JudgedMetric& judged) {

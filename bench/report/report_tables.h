@@ -8,8 +8,8 @@ namespace groundloop::bench {
 
 // The tables of the report as HTML.
 
-/// "0.072 m": a metric's value with the unit that its name ends in.
-std::string value_with_unit(const std::string& metric, double value);
+/// "0.072 m": a metric's value, to so many significant digits, with the unit that its name ends in.
+std::string value_with_unit(const std::string& metric, double value, int digits = 4);
 
 /// One sentence for an expectation: metric, value and bound.
 std::string judged_sentence(const JudgedMetric& judged);

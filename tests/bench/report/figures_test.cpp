@@ -160,6 +160,17 @@ TEST(DrawMaps, ShowTheirCellsToScale) {
   EXPECT_NEAR(count_near(pair, Colour(0x16202c), 4), 2 * 8 * px_per_m * px_per_m, 2500);
 }
 
+TEST(DrawMaps, UndecidedCellsOnlyLean) {
+  const auto colour_of = [](float value) {
+    const slam::OccupancyMap map{{0.1, 0, 0, 100, 10}, std::vector<float>(1000, value)};
+    return draw_map_pair(map, map).at<cv::Vec3b>(100, 300)[1];
+  };
+  EXPECT_GT(colour_of(0.0F), colour_of(0.4F) + 20);
+  EXPECT_GT(colour_of(0.4F), colour_of(0.5F));
+  EXPECT_GT(colour_of(0.5F), colour_of(0.6F));
+  EXPECT_GT(colour_of(0.6F), colour_of(1.0F) + 50);
+}
+
 TEST(DrawMaps, DifferencesAreCountedWhereVisible) {
   slam::OccupancyMap exact{{0.1, 0, 0, 100, 50}, std::vector<float>(5000, 0.0F)};
   slam::OccupancyMap estimate = exact;

@@ -125,6 +125,7 @@ TEST(RunSeries, PercentilesAreInterpolated) {
 
 TEST(ReportTables, UnitsComeFromTheName) {
   EXPECT_EQ(value_with_unit("trajectory.ate_rmse_m", 0.07213), "0.07213\u00a0m");
+  EXPECT_EQ(value_with_unit("trajectory.ate_rmse_m", 0.07213, 3), "0.0721\u00a0m");
   EXPECT_EQ(value_with_unit("trajectory.rpe_rot_deg_per_m", 0.5), "0.5\u00a0°/m");
   EXPECT_EQ(value_with_unit("trajectory.end_yaw_deg", 2), "2°");
   EXPECT_EQ(value_with_unit("map.false_free_m2", 1.25), "1.25\u00a0m²");
