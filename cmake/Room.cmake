@@ -10,7 +10,8 @@ endfunction()
 function(groundloop_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;USES" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
-  target_link_libraries(test_${name} PRIVATE groundloop_base ${TEST_USES} GTest::gtest GTest::gmock GTest::gtest_main)
+  target_link_libraries(test_${name} PRIVATE groundloop_base ${TEST_USES} GTest::gtest GTest::gmock GTest::gtest_main
+    test_temporary_folder)
   gtest_discover_tests(test_${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} TEST_PREFIX "${name}.")
 endfunction()

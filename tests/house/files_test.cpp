@@ -70,6 +70,13 @@ TEST(Packages, AreSortedAndNamedOnce) {
   }
 }
 
+TEST(TemporaryFolder, IsThisProcessOwn) {
+  const std::string mine = fs::temp_directory_path().string();
+  EXPECT_THAT(mine, testing::HasSubstr("groundloop_test_"));
+  EXPECT_TRUE(fs::is_empty(mine));
+  EXPECT_EQ(fs::path(testing::TempDir()).parent_path(), mine);
+}
+
 TEST(Server, CallsTheScriptsThatPeopleRun) {
   const std::string run = tree_text(".ci/run");
   EXPECT_THAT(run, testing::HasSubstr("\nci/test"));
