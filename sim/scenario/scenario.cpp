@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <set>
 
 namespace groundloop::sim {
 namespace {
@@ -14,11 +16,38 @@ int line_of(const YAML::Node& node) {
   return node.IsDefined() && !node.Mark().is_null() ? node.Mark().line + 1 : 0;
 }
 
+std::string flow_text(const YAML::Node& node) {
+  YAML::Emitter out;
+  out << YAML::Flow << node;
+  return out.c_str();
+}
+
+/// A key given twice: yaml-cpp would silently take the first.
+void report_repeated_keys(const YAML::Node& node, const std::string& path, const std::string& file,
+                          std::vector<Problem>& problems) {
+  if (node.IsSequence()) {
+    for (size_t i = 0; i < node.size(); ++i) {
+      report_repeated_keys(node[i], fmt::format("{}[{}]", path, i), file, problems);
+    }
+  }
+  if (!node.IsMap()) return;
+  std::set<std::string> seen;
+  for (const auto& entry : node) {
+    const auto name = entry.first.as<std::string>("");
+    const std::string key = path.empty() ? name : path + "." + name;
+    if (!seen.insert(name).second) {
+      problems.push_back({file, line_of(entry.first), key, "key given twice", "every key once"});
+    }
+    report_repeated_keys(entry.second, key, file, problems);
+  }
+}
+
 /// Faults come with a later version; each one is refused by name, and the list then reads as empty.
 void refuse_faults(YAML::Node& root, const std::string& file, std::vector<Problem>& problems) {
   if (!root.IsMap() || !root["faults"].IsDefined() || !root["faults"].IsSequence()) return;
   for (size_t i = 0; i < root["faults"].size(); ++i) {
-    problems.push_back({file, line_of(root["faults"][i]), fmt::format("faults[{}]", i), "a fault",
+    const YAML::Node fault = root["faults"][i];
+    problems.push_back({file, line_of(fault), fmt::format("faults[{}]", i), flow_text(fault),
                         "an empty list: faults are not supported yet"});
   }
   root["faults"] = YAML::Node(YAML::NodeType::Sequence);
@@ -178,6 +207,7 @@ Scenario load_scenario(const std::string& file, const std::vector<Override>& ove
   Scenario scenario;
   scenario.file = file;
 
+  report_repeated_keys(root, "", file, problems);
   refuse_faults(root, file, problems);
   read_config(root, file, scenario, problems);
   if (!root.IsMap()) throw InputError(problems.front());  // the rest would say that every key is missing

@@ -6,8 +6,8 @@
 namespace groundloop::sim {
 namespace {
 
-constexpr double kReach_m = 0.5;   ///< beyond the robot's own radius
-constexpr double kUpdate_m = 0.3;  ///< way after which to look round again
+constexpr double kReach_m = 0.15;  ///< beyond the robot's own radius
+constexpr double kUpdate_m = 0.1;  ///< way after which to look round again; less than the reach
 
 bool can_touch(const mjModel& model, int geom) {
   return (model.geom_contype[geom] | model.geom_conaffinity[geom]) != 0;

@@ -169,7 +169,8 @@ faults: [{at_s: 12, for_s: 3, wheel_slip: {left: 0.3}}]
           "not supported yet)",
           "test.yaml:9: plan.segments[0].look: {pan_deg: 30}: wanted no look segment: none of the robots "
           "has a pan-tilt head yet",
-          "test.yaml:10: faults[0]: a fault: wanted an empty list: faults are not supported yet"));
+          "test.yaml:10: faults[0]: {at_s: 12, for_s: 3, wheel_slip: {left: 0.3}}: wanted an empty list: "
+          "faults are not supported yet"));
 }
 
 TEST_F(ScenarioFiles, ExpectationsAreChecked) {
@@ -192,6 +193,14 @@ TEST_F(ScenarioFiles, AnEmptyPlanAndAMissingOne) {
   EXPECT_THAT(messages(kHead), ElementsAre("test.yaml:1: plan: missing: wanted a map of keys and values"));
   EXPECT_THAT(messages(kHead + "plan: {speed_mps: 0.2, segments: []}\n"),
               ElementsAre("test.yaml:6: plan.segments: []: wanted at least one segment"));
+}
+
+TEST_F(ScenarioFiles, AKeyGivenTwiceIsNotGuessedAt) {
+  EXPECT_THAT(
+      messages(kHead +
+               "plan:\n  speed_mps: 0.2\n  segments: [{straight_m: 1, straight_m: 2}]\n  speed_mps: 0.3\n"),
+      ElementsAre("test.yaml:8: plan.segments[0].straight_m: key given twice: wanted every key once",
+                  "test.yaml:9: plan.speed_mps: key given twice: wanted every key once"));
 }
 
 TEST_F(ScenarioFiles, NotYamlNotThereNotAMap) {

@@ -191,5 +191,23 @@ TEST(Simulation, WithoutALevelFloorItSaysSo) {
   }
 }
 
+TEST(Simulation, CoarsePhysicsIsRefused) {
+  std::ifstream in("models/robots/p3dx.xml");
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  text.replace(text.find("timestep=\"0.002\""), 16, "timestep=\"0.01\"");
+  const auto coarse = std::filesystem::temp_directory_path() / "groundloop_simulation_coarse.xml";
+  std::ofstream(coarse) << text;
+
+  Scenario scenario = on_the_floor("  speed_mps: 0.2\n  segments: [{straight_m: 1}]\n");
+  scenario.robot.model = coarse.string();
+  const World world = World::load(scenario);
+  try {
+    const Simulation simulation(world, load_head(scenario.head.model), scenario);
+    FAIL() << "steps of 10 ms were accepted";
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.what(), coarse.string() + ": option.timestep: 0.01: wanted a physics step of 2 ms or less");
+  }
+}
+
 }  // namespace
 }  // namespace groundloop::sim
