@@ -47,9 +47,9 @@ TEST(CollisionFocus, LooksOnlyAtWhatIsInReach) {
       write_world(
           "focus",
           kFloor +
-              "<body name='near' pos='0.9 0 0.5'><geom type='sphere' size='0.1'/></body>"
+              "<body name='near' pos='0.5 0 0.3'><geom type='sphere' size='0.1'/></body>"
               "<body name='far' pos='9 0 0.5'><geom type='sphere' size='0.1'/></body>"
-              "<body name='picture' pos='0.9 0 1'><geom size='0.1' contype='0' conaffinity='0'/></body>"),
+              "<body name='picture' pos='0.5 0 0.5'><geom size='0.1' contype='0' conaffinity='0'/></body>"),
       "  speed_mps: 0.2\n  segments: [{straight_m: 0}]\n");
   const World world = World::load(scenario);
   const auto geoms = [&](const CollisionFocus& focus, const char* body) {
