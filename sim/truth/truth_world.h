@@ -45,8 +45,9 @@ struct Outline {
 /// All members are const and may be used by several threads.
 class TruthWorld {
  public:
-  /// @param data  state with positions computed (mj_forward or mj_kinematics); geoms are taken where they are
-  /// now
+  /// @param world  must outlive this object
+  /// @param data   state with positions computed (mj_forward or mj_kinematics); geoms are taken where they
+  /// are now
   TruthWorld(const World& world, const mjData& data);
   /// The same of a bare model; robot_body is the root of the body tree to leave out, -1 for none.
   TruthWorld(const mjModel& model, const mjData& data, int robot_body);
