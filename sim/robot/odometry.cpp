@@ -25,8 +25,8 @@ double gaussian(uint64_t seed, uint64_t stream, uint64_t counter) {
 Odometry::Odometry(const OdometryModel& model, const DriveLimits& drive, uint64_t seed, double left_rad,
                    double right_rad)
     : model_(model), seed_(seed), track_m_(drive.track_m / model.track_ratio), counts_{} {
-  // Wheels of mean radius R and ratio E_d have radii R 2 / (E_d + 1) and R 2 E_d / (E_d + 1). Taking both as R reads
-  // the left wheel's way too long and the right one's too short by these factors.
+  // Wheels of mean radius R and ratio E_d have radii R 2 / (E_d + 1) and R 2 E_d / (E_d + 1). Taking both as
+  // R reads the left wheel's way too long and the right one's too short by these factors.
   const double way_m = 2 * std::numbers::pi * drive.wheel_radius_m / model.counts_per_rev;
   const double e = model.diameter_ratio;
   way_m_per_count_ = {way_m * (e + 1) / 2, way_m * (e + 1) / (2 * e)};
