@@ -21,8 +21,8 @@ int complain(Outcome outcome, const std::string& text) {
 }
 
 /// CLI11 speaks of missing subcommands before it looks at what was given instead.
-void check_command(CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return;
+void check_command(CLI::App& app, char** argv) {
+  if (argv[1][0] == '-') return;
   std::string names;
   for (const CLI::App* command : app.get_subcommands(nullptr)) {
     if (command->get_name() == argv[1]) return;
@@ -39,7 +39,11 @@ int parse_and_run(int argc, char** argv) {
       "Exit codes: 0 pass, 1 the SLAM fell short, 2 bad input, 3 internal error, 130 stopped by Ctrl-C.");
   CommandAction action;
   add_commands(app, action);
-  check_command(app, argc, argv);
+  if (argc < 2) {
+    fmt::print(stderr, "{}", app.help());
+    return exit_code(Outcome::kBadInput);
+  }
+  check_command(app, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

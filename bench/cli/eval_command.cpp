@@ -187,6 +187,10 @@ int eval_planar(const EvalOptions& options) {
 
 int eval(const EvalOptions& options, bool delta_was_given) {
   if (options.planar) return eval_planar(options);
+  if (options.rpe.unit == DeltaUnit::kFrames && options.rpe.delta < 1) {
+    throw InputError(
+        Problem{"", 0, "--rpe-delta", fmt::format("{:g}", options.rpe.delta), "at least 1 frame"});
+  }
   const Evaluation result = evaluate(options);
   if (delta_was_given && result.rpe_errors.empty()) {
     throw InputError(Problem{options.estimate, 0, "--rpe-delta",

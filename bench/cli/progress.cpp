@@ -25,9 +25,10 @@ std::string minutes(double seconds) {
   return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
-std::string time_left(double elapsed_s, int64_t done, int64_t total) {
+/// @param done, left  pairs done in the elapsed time, and yet to do
+std::string time_left(double elapsed_s, int64_t done, int64_t left) {
   if (done <= 0) return "";
-  const double left_s = elapsed_s * static_cast<double>(total - done) / static_cast<double>(done);
+  const double left_s = elapsed_s * static_cast<double>(left) / static_cast<double>(done);
   return fmt::format(", {} left", minutes(left_s));
 }
 
@@ -47,7 +48,7 @@ void Progress::update(const std::string& name, int64_t done, int64_t total) {
   const double now_s = now_s_();
   const auto [entry, is_new] = running_.try_emplace(name);
   Run& run = entry->second;
-  if (is_new) run.start_s = now_s;
+  if (is_new) run.start_s = now_s, run.start_done = done;
   run.done = done;
   run.total = std::max<int64_t>(total, 1);
 
@@ -65,25 +66,26 @@ void Progress::update(const std::string& name, int64_t done, int64_t total) {
   if (tenths <= run.tenths_shown) return;
   run.tenths_shown = tenths;
   out_ << fmt::format("{}: {} % ({} of {} pairs){}\n", name, 10 * tenths, run.done, run.total,
-                      time_left(now_s - run.start_s, run.done, run.total))
+                      time_left(now_s - run.start_s, run.done - run.start_done, run.total - run.done))
        << std::flush;
 }
 
 void Progress::draw_bar() {
   const double now_s = now_s_();
   std::string names;
-  int64_t done = 0, total = 0;
+  int64_t done = 0, done_since_start = 0, total = 0;
   double start_s = now_s;
   for (const auto& [name, run] : running_) {
     names += (names.empty() ? "" : ", ") + name;
     done += run.done;
+    done_since_start += run.done - run.start_done;
     total += run.total;
     start_s = std::min(start_s, run.start_s);
   }
   const auto filled = static_cast<size_t>(kBarWidth * done / total);
   out_ << fmt::format("\r\x1b[K{} [{}{}] {:3} %{}", names, std::string(filled, '#'),
                       std::string(kBarWidth - filled, '.'), 100 * done / total,
-                      time_left(now_s - start_s, done, total))
+                      time_left(now_s - start_s, done_since_start, total - done))
        << std::flush;
   last_drawn_s_ = now_s;
   bar_shown_ = true;

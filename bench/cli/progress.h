@@ -27,7 +27,8 @@ class Progress {
 
  private:
   struct Run {
-    double start_s = 0;
+    double start_s = 0;  ///< time and pairs done when it was first heard of
+    int64_t start_done = 0;
     int64_t done = 0;
     int64_t total = 0;
     int tenths_shown = 0;

@@ -42,8 +42,10 @@ std::string headline(const Metrics& metrics) {
   return text;
 }
 
-void print_text(const RunOutcome& run) {
-  fmt::print("{} seed {}: {}{}\n", run.name, run.seed, name_of(run.verdict.outcome), headline(run.metrics));
+/// @param seeded  false for a recording, which has no seed
+void print_text(const RunOutcome& run, bool seeded) {
+  const std::string seed = seeded ? fmt::format(" seed {}", run.seed) : "";
+  fmt::print("{}{}: {}{}\n", run.name, seed, name_of(run.verdict.outcome), headline(run.metrics));
   for (const Shortfall& missed : run.verdict.shortfalls) fmt::print("  {}\n", missed.text());
   if (run.verdict.outcome > Outcome::kFellShort) fmt::print(stderr, "{}\n", run.verdict.message);
   if (!run.folder.empty()) fmt::print("  {}/report.html\n", run.folder);
@@ -69,7 +71,7 @@ ordered_json as_json(const RunOutcome& run) {
 }
 
 /// Reports what came out; the exit code is that of the worst run.
-int report(const std::vector<RunOutcome>& runs, bool json) {
+int report(const std::vector<RunOutcome>& runs, bool seeded, bool json) {
   std::vector<Verdict> verdicts;
   ordered_json answer = ordered_json::array();
   for (const RunOutcome& run : runs) {
@@ -77,7 +79,7 @@ int report(const std::vector<RunOutcome>& runs, bool json) {
     if (json) {
       answer.push_back(as_json(run));
     } else {
-      print_text(run);
+      print_text(run, seeded);
     }
   }
   if (json) fmt::print("{}\n", answer.dump(2));
@@ -112,7 +114,7 @@ int run_scenarios(const RunOptions& options) {
     for (const RunOutcome& run : runs) judged.push_back({run.name, run.seed, run.wall_s, run.verdict});
     write_junit(options.junit, "groundloop", judged);
   }
-  return report(runs, options.json);
+  return report(runs, true, options.json);
 }
 
 int replay_sequence(const ReplayOptions& options) {
@@ -121,7 +123,7 @@ int replay_sequence(const ReplayOptions& options) {
     Progress progress;
     runs.push_back(replay(options, control_with(progress)));
   }
-  return report(runs, options.json);
+  return report(runs, false, options.json);
 }
 
 /// Text that is parsed once the command line is known to be good.

@@ -56,7 +56,7 @@ std::string junit_xml(const std::string& suite, const std::vector<JudgedRun>& ru
   for (const JudgedRun& run : runs) wall_s += run.wall_s;
 
   tinyxml2::XMLPrinter out;
-  out.PushHeader(false, true);
+  out.PushDeclaration("xml version=\"1.0\" encoding=\"UTF-8\"");
   const auto open = [&](const char* element) {
     out.OpenElement(element);
     attribute(out, "name", element == std::string("testsuites") ? "groundloop" : suite);
