@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "slam/features/patch_kernels.h"
@@ -20,6 +21,13 @@ bool window_inside(const cv::Mat& image, const Eigen::Vector2f& uv, const Eigen:
   // Written so that NaN is outside.
   return uv.x() - du >= 1 && uv.y() - dv >= 1 && uv.x() + du < static_cast<float>(image.cols - 2) &&
          uv.y() + dv < static_cast<float>(image.rows - 2);
+}
+
+/// The same for the region of a first view.
+bool region_inside(const cv::Mat& image, const Eigen::Vector2f& uv) {
+  constexpr float kReach = kRegionSize / 2 + 1, kPadded = kRegionStride - kRegionSize / 2 + 1;
+  return uv.x() >= kReach && uv.y() >= kReach && uv.x() + kPadded < static_cast<float>(image.cols) &&
+         uv.y() + kReach + 1 < static_cast<float>(image.rows);
 }
 
 void warp(const cv::Mat& image, const Eigen::Vector2f& uv, const Eigen::Matrix2f& A, float* patch) {
@@ -42,45 +50,50 @@ Normalisation normalisation_of(const float* patch) {
   return {mean, energy > least ? 1 / std::sqrt(energy) : 0};
 }
 
-/// Gradients and Hessians of one level; false when the window is flat or has texture in one direction only.
+/// Hessian of (translation, affine), with the mean of each steepest-descent image taken off: the bias is
+/// free, so only what differs from the mean informs.
+Eigen::Matrix<float, 6, 6> hessian_of(const GradientMoments& m) {
+  // rows and columns: gx, gy, x gx, y gx, x gy, y gy; moments: 1, x, y, xx, xy, yy
+  Eigen::Matrix<float, 6, 6> H;
+  H << m.xx[0], m.xy[0], m.xx[1], m.xx[2], m.xy[1], m.xy[2],  //
+      m.xy[0], m.yy[0], m.xy[1], m.xy[2], m.yy[1], m.yy[2],   //
+      m.xx[1], m.xy[1], m.xx[3], m.xx[4], m.xy[3], m.xy[4],   //
+      m.xx[2], m.xy[2], m.xx[4], m.xx[5], m.xy[4], m.xy[5],   //
+      m.xy[1], m.yy[1], m.xy[3], m.xy[4], m.yy[3], m.yy[4],   //
+      m.xy[2], m.yy[2], m.xy[4], m.xy[5], m.yy[4], m.yy[5];
+  Eigen::Matrix<float, 6, 1> mean;
+  mean << m.gx[0], m.gy[0], m.gx[1], m.gx[2], m.gy[1], m.gy[2];
+  return H - mean * mean.transpose() / kArea;
+}
+
+/// Values, gradients and Hessians of one level; false when the window is flat or has texture in one direction
+/// only.
 bool prepare_level(const cv::Mat& image, const Eigen::Vector2f& uv, PatchLevel& level) {
-  const Eigen::Matrix2f identity = Eigen::Matrix2f::Identity();
-  if (!window_inside(image, uv, 1.3F * identity)) return false;
-  alignas(32) PatchBuffer raw, left, right, up, down;
-  warp(image, uv, identity, raw.data());
-  warp(image, uv - Eigen::Vector2f(1, 0), identity, left.data());
-  warp(image, uv + Eigen::Vector2f(1, 0), identity, right.data());
-  warp(image, uv - Eigen::Vector2f(0, 1), identity, up.data());
-  warp(image, uv + Eigen::Vector2f(0, 1), identity, down.data());
-  const Normalisation n = normalisation_of(raw.data());
-  if (n.scale == 0) return false;
-
-  Eigen::Matrix<double, 6, 6> H = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 1> mean = Eigen::Matrix<double, 6, 1>::Zero();
+  if (!region_inside(image, uv)) return false;
+  alignas(32) std::array<float, kRegionSize * kRegionStride> region;
+  sample_region(image.ptr<int16_t>(), static_cast<ptrdiff_t>(image.step1()), uv.x(), uv.y(), region.data());
   for (int row = 0; row < kPatchSize; ++row) {
-    for (int col = 0; col < kPatchStride; ++col) {
-      const int i = row * kPatchStride + col;
-      const bool inside = col < kPatchSize;
-      level.grey[i] = inside ? (raw[i] - n.mean) * n.scale : 0;
-      level.gx[i] = inside ? 0.5F * (right[i] - left[i]) * n.scale : 0;
-      level.gy[i] = inside ? 0.5F * (down[i] - up[i]) * n.scale : 0;
-      const double x = static_cast<double>(col - kPatchHalf) / kPatchHalf;
-      const double y = static_cast<double>(row - kPatchHalf) / kPatchHalf;
-      Eigen::Matrix<double, 6, 1> J;
-      J << level.gx[i], level.gy[i], x * level.gx[i], y * level.gx[i], x * level.gy[i], y * level.gy[i];
-      H += J * J.transpose();
-      mean += J;
-    }
+    std::copy_n(region.data() + (row + 1) * kRegionStride + 1, kPatchStride,
+                level.grey.data() + row * kPatchStride);
   }
-  H -= mean * mean.transpose() / kArea;  // the bias is free: only what differs from the mean informs
-  // A weak pull towards the predicted shape keeps windows with little texture from collapsing.
-  for (int k = 2; k < 6; ++k) H(k, k) += 0.01 * (H(0, 0) + H(1, 1));
+  const Normalisation n = normalisation_of(level.grey.data());
+  if (n.scale == 0) return false;
+  for (int i = 0; i < kPatchArea; ++i) {
+    level.grey[i] = i % kPatchStride < kPatchSize ? (level.grey[i] - n.mean) * n.scale : 0;
+  }
+  region_gradients(region.data(), n.scale, level.gx.data(), level.gy.data());
 
-  const Eigen::Matrix2d H_translation = H.topLeftCorner<2, 2>();
-  const double trace = H_translation.trace();
-  if (!(H_translation.determinant() > 1e-4 * trace * trace)) return false;
-  level.inverse_translation_hessian = H_translation.inverse().cast<float>();
-  level.inverse_hessian = H.ldlt().solve(Eigen::Matrix<double, 6, 6>::Identity()).cast<float>();
+  GradientMoments moments;
+  gradient_moments(level.gx.data(), level.gy.data(), &moments);
+  Eigen::Matrix<float, 6, 6> H = hessian_of(moments);
+  // A weak pull towards the predicted shape keeps windows with little texture from collapsing.
+  for (int k = 2; k < 6; ++k) H(k, k) += 0.01F * (H(0, 0) + H(1, 1));
+
+  const Eigen::Matrix2f H_translation = H.topLeftCorner<2, 2>();
+  const float trace = H_translation.trace();
+  if (!(H_translation.determinant() > 1e-4F * trace * trace)) return false;
+  level.inverse_translation_hessian = H_translation.inverse();
+  level.inverse_hessian = H.ldlt().solve(Eigen::Matrix<float, 6, 6>::Identity());
   return true;
 }
 

@@ -48,6 +48,79 @@ void warp_patch(const int16_t* image, ptrdiff_t stride, float u, float v, const 
 }
 
 GROUNDLOOP_MULTIVERSION
+void sample_region(const int16_t* image, ptrdiff_t stride, float u, float v, float* region) {
+  const int iu = static_cast<int>(u), iv = static_cast<int>(v);
+  const float fu = u - static_cast<float>(iu), fv = v - static_cast<float>(iv);
+  const float w00 = (1 - fu) * (1 - fv), w01 = fu * (1 - fv), w10 = (1 - fu) * fv, w11 = fu * fv;
+  for (int row = 0; row < kRegionSize; ++row) {
+    const int16_t* top = image + (iv + row - kRegionSize / 2) * stride + iu - kRegionSize / 2;
+    const int16_t* bottom = top + stride;
+    float* out = region + row * kRegionStride;
+    for (int i = 0; i < kRegionStride; ++i) {
+      out[i] = w00 * top[i] + w01 * top[i + 1] + w10 * bottom[i] + w11 * bottom[i + 1];
+    }
+  }
+}
+
+GROUNDLOOP_MULTIVERSION
+void region_gradients(const float* region, float scale, float* gx, float* gy) {
+  for (int row = 0; row < kPatchSize; ++row) {
+    const float* above = region + row * kRegionStride + 1;
+    const float* here = above + kRegionStride;
+    const float* below = here + kRegionStride;
+    for (int i = 0; i < kPatchStride; ++i) {
+      gx[row * kPatchStride + i] = 0.5F * scale * kInside[i] * (here[i + 1] - here[i - 1]);
+      gy[row * kPatchStride + i] = 0.5F * scale * kInside[i] * (below[i] - above[i]);
+    }
+  }
+}
+
+GROUNDLOOP_MULTIVERSION
+void gradient_moments(const float* gx, const float* gy, GradientMoments* moments) {
+  // Sums over the columns first: y is the same for a whole row.
+  float sums[13][kLanes];
+  double total[24] = {};
+  for (int row = 0; row < kPatchSize; ++row) {
+    for (auto& lanes : sums) {
+      for (float& lane : lanes) lane = 0;
+    }
+    for (int half = 0; half < kPatchStride; half += kLanes) {
+      const int at = row * kPatchStride + half;
+      for (int i = 0; i < kLanes; ++i) {
+        const float x = kX[half + i] * (1.0F / kPatchHalf);
+        const float a = gx[at + i], b = gy[at + i];
+        const float aa = a * a, ab = a * b, bb = b * b;
+        sums[0][i] += aa, sums[1][i] += aa * x, sums[2][i] += aa * x * x;
+        sums[3][i] += ab, sums[4][i] += ab * x, sums[5][i] += ab * x * x;
+        sums[6][i] += bb, sums[7][i] += bb * x, sums[8][i] += bb * x * x;
+        sums[9][i] += a, sums[10][i] += a * x;
+        sums[11][i] += b, sums[12][i] += b * x;
+      }
+    }
+    const double y = static_cast<double>(row - kPatchHalf) / kPatchHalf;
+    for (int g = 0; g < 3; ++g) {
+      const double s = sum_of(sums[3 * g]), sx = sum_of(sums[3 * g + 1]), sxx = sum_of(sums[3 * g + 2]);
+      double* t = total + 6 * g;
+      t[0] += s, t[1] += sx, t[2] += s * y, t[3] += sxx, t[4] += sx * y, t[5] += s * y * y;
+    }
+    for (int g = 0; g < 2; ++g) {
+      const double s = sum_of(sums[9 + 2 * g]), sx = sum_of(sums[10 + 2 * g]);
+      double* t = total + 18 + 3 * g;
+      t[0] += s, t[1] += sx, t[2] += s * y;
+    }
+  }
+  for (int k = 0; k < 6; ++k) {
+    moments->xx[k] = static_cast<float>(total[k]);
+    moments->xy[k] = static_cast<float>(total[6 + k]);
+    moments->yy[k] = static_cast<float>(total[12 + k]);
+  }
+  for (int k = 0; k < 3; ++k) {
+    moments->gx[k] = static_cast<float>(total[18 + k]);
+    moments->gy[k] = static_cast<float>(total[21 + k]);
+  }
+}
+
+GROUNDLOOP_MULTIVERSION
 void patch_moments(const float* patch, float* sum, float* sum_of_squares) {
   float s[kLanes] = {}, q[kLanes] = {};
   for (int row = 0; row < kPatchSize; ++row) {

@@ -19,6 +19,11 @@
 #include "slam/types/stereo_uncertainty.h"
 
 namespace groundloop::slam {
+namespace {
+
+constexpr int kBorder_px = 18;  // keeps a first view with its gradients inside the image
+
+}  // namespace
 
 struct Pipeline::Impl {
   Impl(const StereoRig& stereo_rig, const SlamOptions& slam_options)
@@ -254,7 +259,7 @@ void Pipeline::Impl::add_features(const StereoFrame& frame, StageClock& clock) {
   occupied.clear();
   for (const Feature& feature : tracker.features()) occupied.push_back(feature.left.uv_px);
   const int wanted = options.tracking.max_features - static_cast<int>(occupied.size());
-  const std::vector<Eigen::Vector2f>& corners = detector.detect(frame.left, occupied, wanted, kPatchSize);
+  const std::vector<Eigen::Vector2f>& corners = detector.detect(frame.left, occupied, wanted, kBorder_px);
   clock.lap(Stage::kDetection);
   dense.compute(frame.left, frame.right);
   clock.lap(Stage::kDisparity);

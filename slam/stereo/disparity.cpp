@@ -7,8 +7,10 @@
 namespace groundloop::slam {
 
 namespace {
-constexpr float kDisparityScale = 16;  // fixed point of OpenCV's disparity maps
-}
+
+constexpr int kFixedPoint = 16;  // of OpenCV's disparity maps
+
+}  // namespace
 
 DenseDisparity::DenseDisparity(const DisparityOptions& options)
     : matcher_(cv::StereoBM::create(options.max_disparity_px / 2, options.window_px)) {
@@ -21,7 +23,23 @@ DenseDisparity::DenseDisparity(const DisparityOptions& options)
 void DenseDisparity::compute(const cv::Mat& left, const cv::Mat& right) {
   cv::resize(left, half_left_, cv::Size(left.cols / 2, left.rows / 2), 0, 0, cv::INTER_AREA);
   cv::resize(right, half_right_, half_left_.size(), 0, 0, cv::INTER_AREA);
-  matcher_->compute(half_left_, half_right_, disparity_);
+  // The matcher leaves out the columns that it cannot search over the full width; a border gives it the room.
+  const int border = matcher_->getNumDisparities();
+  cv::copyMakeBorder(half_left_, wide_left_, 0, 0, border, 0, cv::BORDER_REPLICATE);
+  cv::copyMakeBorder(half_right_, wide_right_, 0, 0, border, 0, cv::BORDER_REPLICATE);
+  matcher_->compute(wide_left_, wide_right_, wide_disparity_);
+  wide_disparity_(cv::Rect(border, 0, half_left_.cols, half_left_.rows)).copyTo(disparity_);
+  forget_matches_outside();
+}
+
+void DenseDisparity::forget_matches_outside() {
+  const int border = matcher_->getNumDisparities();
+  for (int v = 0; v < disparity_.rows; ++v) {
+    auto* values = disparity_.ptr<int16_t>(v);
+    for (int u = 0; u < std::min(border, disparity_.cols); ++u) {
+      if (values[u] > u * kFixedPoint) values[u] = -kFixedPoint;
+    }
+  }
 }
 
 std::optional<float> DenseDisparity::around(float u_px, float v_px) const {
@@ -39,7 +57,7 @@ std::optional<float> DenseDisparity::around(float u_px, float v_px) const {
   }
   if (count < kLeast) return std::nullopt;
   std::nth_element(known.begin(), known.begin() + count / 2, known.begin() + count);
-  return 2.0F * static_cast<float>(known[count / 2]) / kDisparityScale;
+  return 2.0F * static_cast<float>(known[count / 2]) / kFixedPoint;
 }
 
 }  // namespace groundloop::slam

@@ -43,8 +43,10 @@ class DenseDisparity {
   std::optional<float> around(float u_px, float v_px) const;
 
  private:
+  void forget_matches_outside();
+
   cv::Ptr<cv::StereoBM> matcher_;
-  cv::Mat half_left_, half_right_, disparity_;
+  cv::Mat half_left_, half_right_, wide_left_, wide_right_, wide_disparity_, disparity_;
 };
 
 }  // namespace groundloop::slam
