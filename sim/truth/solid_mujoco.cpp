@@ -34,6 +34,7 @@ Triangles height_field_triangles(const mjModel& model, int height_field) {
     }
   }
   std::vector<int> border;  // counter-clockwise from above
+  border.reserve(2 * static_cast<size_t>(rows + cols));
   for (int c = 0; c < cols - 1; ++c) border.push_back(c);
   for (int r = 0; r < rows - 1; ++r) border.push_back(r * cols + cols - 1);
   for (int c = cols - 1; c > 0; --c) border.push_back((rows - 1) * cols + c);
