@@ -22,6 +22,7 @@ cv::Point fixed(cv::Point2d p) {
 
 std::vector<cv::Point> fixed(const std::vector<cv::Point2d>& points) {
   std::vector<cv::Point> result;
+  result.reserve(points.size());
   for (const auto& p : points) result.push_back(fixed(p));
   return result;
 }
@@ -52,6 +53,7 @@ void Canvas::polygon(const std::vector<cv::Point2d>& points, Colour colour, doub
   const std::vector<std::vector<cv::Point>> lines = {fixed(points)};
   if (alpha >= 1) return cv::fillPoly(pixels_, lines, colour.scalar(), cv::LINE_AA, kShift);
   std::vector<cv::Point2f> corners;
+  corners.reserve(points.size());
   for (const auto& p : points) corners.emplace_back(p * kScale);
   const cv::Rect around = cv::boundingRect(corners);
   const cv::Rect area = cv::Rect(around.x - 2, around.y - 2, around.width + 4, around.height + 4) &

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <opencv2/imgproc.hpp>
 
@@ -120,9 +121,8 @@ namespace {
 /// Upper end of the colour scale [full-resolution px]: nearly all known disparities lie below.
 double scale_end_px(const cv::Mat& disparity) {
   std::vector<int16_t> known;
-  for (auto it = disparity.begin<int16_t>(); it != disparity.end<int16_t>(); ++it) {
-    if (*it >= 0) known.push_back(*it);
-  }
+  std::copy_if(disparity.begin<int16_t>(), disparity.end<int16_t>(), std::back_inserter(known),
+               [](int16_t d) { return d >= 0; });
   if (known.empty()) return 10;
   const auto rank = known.begin() + static_cast<long>(0.995 * static_cast<double>(known.size() - 1));
   std::nth_element(known.begin(), rank, known.end());
@@ -175,7 +175,7 @@ cv::Mat draw_disparity(const cv::Mat& disparity, const slam::StereoRig& rig) {
     canvas.text({x, below}, metres, kTextSize, palette::kSoftInk, Align::kCentre);
   }
   canvas.rectangle({size.width - 190.0, static_cast<double>(bar.y), 40, kBarHeight}, kDark);
-  canvas.text({size.width - 140.0, bar.y + kBarHeight / 2 + kTextSize / 2}, "unknown", kTextSize,
+  canvas.text({size.width - 140.0, bar.y + (kBarHeight + kTextSize) / 2}, "unknown", kTextSize,
               palette::kSoftInk);
   return canvas.image();
 }

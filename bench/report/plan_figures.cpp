@@ -51,6 +51,7 @@ struct Heights {
 
 Heights height_range(const std::vector<DrawnPoint>& cloud) {
   std::vector<float> z;
+  z.reserve(cloud.size());
   for (const DrawnPoint& point : cloud) z.push_back(point.p.z());
   const double low_m = std::floor(quantile(z, 0.02) * 4) / 4, high_m = std::ceil(quantile(z, 0.98) * 4) / 4;
   return {low_m, std::max(high_m, low_m + 0.5)};

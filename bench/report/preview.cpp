@@ -47,6 +47,7 @@ cv::Mat draw_preview(const std::vector<Footprint>& outline, const std::vector<Pl
   draw_outline(canvas, view, outline, true);
 
   std::vector<cv::Point2d> points;
+  points.reserve(path.size());
   for (const PlanPose& pose : path) points.push_back(view(pose.x_m, pose.y_m));
   canvas.polyline(points, palette::kPaper, 7);
   canvas.polyline(points, kPath, 3);

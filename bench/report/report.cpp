@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
@@ -211,31 +212,48 @@ std::string count_plot(const RunFolder& run) {
               .series = {},
               .bands = lost_spans_s(run.frames),
               .band_name = "lost"};
-  const auto add = [&](const char* column, const char* name, const char* colour) {
+  const auto add = [&](const char* column, const char* name, const char* colour, bool area) {
     const auto& values = run.frames.column(column);
-    if (!values.empty()) counts.series.push_back({name, colour, values});
+    if (!values.empty()) counts.series.push_back({name, colour, values, area});
   };
-  add("features_tracked", "tracked", "var(--s1)");
-  add("inliers", "inliers", "var(--s5)");
+  add("features_tracked", "tracked", "var(--pale)", true);  // an area, for the inliers nearly cover it
+  add("inliers", "inliers", "var(--s1)", false);
   if (counts.series.empty() || counts.x.empty()) return note("The run left no counts of features.");
   return figure(plot(counts), "Features.", "Tracked into each frame, and those that agreed with the motion.");
 }
 
+/// Means of each `stretch` values, the last of what remains.
+std::vector<double> means(const std::vector<double>& values, size_t stretch) {
+  std::vector<double> result;
+  for (size_t begin = 0; begin < values.size(); begin += stretch) {
+    const size_t end = std::min(begin + stretch, values.size());
+    double sum = 0;
+    for (size_t i = begin; i < end; ++i) sum += values[i];
+    result.push_back(sum / static_cast<double>(end - begin));
+  }
+  return result;
+}
+
 std::string time_plot(const RunFolder& run) {
+  // every key frame is a peak: many of them would only be a blur
+  const size_t stretch = 1 + run.frames.rows / 200;
   Plot times{.description = "Time of each stage over the run, stacked",
              .x_label = "time [s]",
              .y_label = "SLAM time [ms]",
-             .x = frame_times_s(run.frames),
+             .x = means(frame_times_s(run.frames), stretch),
              .series = {},
              .bands = {},
              .band_name = ""};
   for (size_t stage = 0; stage < slam::kStageCount; ++stage) {
     const std::string name = slam::name_of(static_cast<slam::Stage>(stage));
     const auto& values = run.frames.column(name + "_ms");
-    if (!values.empty()) times.series.push_back({name, stage_colour(stage), values, true});
+    if (!values.empty()) times.series.push_back({name, stage_colour(stage), means(values, stretch), true});
   }
   if (times.series.empty() || times.x.empty()) return note("The run left no stage times.");
-  return figure(plot(times), "Time of the stages.", "Stacked; peaks are key frames.");
+  return figure(plot(times), "Time of the stages.",
+                stretch == 1
+                    ? "Stacked; peaks are key frames."
+                    : fmt::format("Stacked, mean of each {} pairs; the table below has the peaks.", stretch));
 }
 
 std::string page(const RunFolder& run) {
@@ -276,7 +294,7 @@ std::string write_report(const std::string& run_dir) {
   if (error) {
     throw InputError(Problem{run_dir, 0, "figures", error.message(), "a folder that can be written to"});
   }
-  const std::string file = (fs::path(run_dir) / "report.html").string();
+  std::string file = (fs::path(run_dir) / "report.html").string();
   const std::string html = page(run);
   slam::write_file_atomically(file, [&](std::ostream& out) { out << html; });
   return file;

@@ -6,11 +6,11 @@ namespace groundloop::bench {
 /// paper.
 inline constexpr const char* kReportStyle = R"css(
 :root{color-scheme:light dark;--ground:#f4f6f9;--card:#fff;--ink:#18212c;--soft:#5a6675;--edge:#dde3ea;--accent:#1f5fd0;
---good:#0f7b4b;--good-ground:#e3f5ec;--bad:#b3243a;--bad-ground:#fbe7ea;--odd:#8a5a00;--odd-ground:#fdf1d8;--band:#f3a6b080;
+--good:#0f7b4b;--good-ground:#e3f5ec;--bad:#b3243a;--bad-ground:#fbe7ea;--odd:#8a5a00;--odd-ground:#fdf1d8;--band:#f3a6b080;--pale:#bccbf0;
 --s1:#4269d0;--s2:#e8963a;--s3:#d6455d;--s4:#3fa7a0;--s5:#6a9f3c;--s6:#b07aa1;--s7:#8c6d4f;--s8:#7f8a99}
 @media (prefers-color-scheme:dark){:root{--ground:#10151c;--card:#19212b;--ink:#e6ebf1;--soft:#9aa7b6;--edge:#2c3744;
 --accent:#7fb0ff;--good:#5fd7a0;--good-ground:#12352a;--bad:#ff8b9b;--bad-ground:#43202a;--odd:#f5c469;
---odd-ground:#3d3115;--band:#c2405780;--s1:#7c9bf2;--s2:#f2ad5c;--s3:#f2788c;--s4:#63c7c0;--s5:#97c766;--s6:#cf9fc4;
+--odd-ground:#3d3115;--band:#c2405780;--pale:#33466f;--s1:#7c9bf2;--s2:#f2ad5c;--s3:#f2788c;--s4:#63c7c0;--s5:#97c766;--s6:#cf9fc4;
 --s7:#b8987a;--s8:#a3adba}}
 *{box-sizing:border-box}
 body{margin:0;background:var(--ground);color:var(--ink);font:16px/1.55 system-ui,-apple-system,"Segoe UI",Roboto,
@@ -27,7 +27,7 @@ h2{font-size:1.3rem;margin:48px 0 14px;letter-spacing:-.005em}
 .verdict.pass{background:var(--good-ground);border-color:var(--good)}.verdict.pass strong{color:var(--good)}
 .verdict.short{background:var(--bad-ground);border-color:var(--bad)}.verdict.short strong{color:var(--bad)}
 .verdict.error{background:var(--odd-ground);border-color:var(--odd)}.verdict.error strong{color:var(--odd)}
-.tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(130px,1fr));gap:12px;margin:18px 0 0;padding:0}
+.tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(116px,1fr));gap:12px;margin:18px 0 0;padding:0}
 .tiles div{background:var(--card);border:1px solid var(--edge);border-radius:12px;padding:12px 16px}
 .tiles dt{color:var(--soft);font-size:.82rem;line-height:1.3}
 .tiles dd{margin:2px 0 0;font-size:1.3rem;font-weight:650;font-variant-numeric:tabular-nums;white-space:nowrap}

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "bench/report/canvas.h"
 #include "bench/report/html.h"
@@ -98,8 +99,8 @@ std::string area_of(const std::vector<double>& x, const std::vector<double>& low
                     const std::vector<double>& upper, const std::vector<size_t>& kept, const Axis& x_of,
                     const Axis& y_of) {
   std::string path = path_of(x, upper, kept, x_of, y_of);
-  for (auto i = kept.rbegin(); i != kept.rend(); ++i) {
-    path += fmt::format("L{:.1f} {:.1f}", x_of(x[*i]), y_of(lower[*i]));
+  for (const size_t i : std::views::reverse(kept)) {
+    path += fmt::format("L{:.1f} {:.1f}", x_of(x[i]), y_of(lower[i]));
   }
   return path + "Z";
 }
@@ -142,9 +143,7 @@ std::string legend(const Plot& plot) {
     x -= 34;
   };
   if (!plot.bands.empty()) entry(plot.band_name, "var(--band)");
-  for (auto series = plot.series.rbegin(); series != plot.series.rend(); ++series) {
-    entry(series->name, series->colour);
-  }
+  for (const PlotSeries& series : std::views::reverse(plot.series)) entry(series.name, series.colour);
   return svg;
 }
 
