@@ -28,9 +28,9 @@ h2{font-size:1.3rem;margin:48px 0 14px;letter-spacing:-.005em}
 .verdict.short{background:var(--bad-ground);border-color:var(--bad)}.verdict.short strong{color:var(--bad)}
 .verdict.error{background:var(--odd-ground);border-color:var(--odd)}.verdict.error strong{color:var(--odd)}
 .tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(116px,1fr));gap:12px;margin:18px 0 0;padding:0}
-.tiles div{background:var(--card);border:1px solid var(--edge);border-radius:12px;padding:12px 16px}
+.tiles div{background:var(--card);border:1px solid var(--edge);border-radius:12px;padding:12px 14px}
 .tiles dt{color:var(--soft);font-size:.82rem;line-height:1.3}
-.tiles dd{margin:2px 0 0;font-size:1.3rem;font-weight:650;font-variant-numeric:tabular-nums;white-space:nowrap}
+.tiles dd{margin:2px 0 0;font-size:1.2rem;font-weight:650;font-variant-numeric:tabular-nums;white-space:nowrap}
 figure{margin:0 0 20px;background:var(--card);border:1px solid var(--edge);border-radius:12px;overflow:hidden}
 figure img{display:block;width:100%;height:auto;background:#fff}
 figcaption{padding:12px 16px;font-size:.92rem;color:var(--soft)}

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include "bench/report/canvas.h"
 #include "bench/report/html.h"
@@ -99,7 +98,7 @@ std::string area_of(const std::vector<double>& x, const std::vector<double>& low
                     const std::vector<double>& upper, const std::vector<size_t>& kept, const Axis& x_of,
                     const Axis& y_of) {
   std::string path = path_of(x, upper, kept, x_of, y_of);
-  for (const size_t i : std::views::reverse(kept)) {
+  for (const size_t i : std::vector<size_t>(kept.rbegin(), kept.rend())) {
     path += fmt::format("L{:.1f} {:.1f}", x_of(x[i]), y_of(lower[i]));
   }
   return path + "Z";
@@ -143,7 +142,7 @@ std::string legend(const Plot& plot) {
     x -= 34;
   };
   if (!plot.bands.empty()) entry(plot.band_name, "var(--band)");
-  for (const PlotSeries& series : std::views::reverse(plot.series)) entry(series.name, series.colour);
+  for (size_t i = plot.series.size(); i-- > 0;) entry(plot.series[i].name, plot.series[i].colour);
   return svg;
 }
 
