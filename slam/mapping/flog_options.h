@@ -16,11 +16,10 @@ struct FlogOptions {
   /// view below a desk speaks against the desk.
   bool fuse_layers = true;
 
-  double k_empty = 0.10;       ///< largest emptiness one key frame can add to a cell
-  double k_occupied = 0.25;    ///< largest occupancy one key frame can add to a cell
-  double k_confidence = 0.20;  ///< largest confidence one key frame can add to a cell
-  double lambda =
-      0.5;  ///< how much a local map revises the contrary belief of the global one; 0: plain union
+  double k_empty = 0.40;       ///< largest emptiness one key frame can add to a cell
+  double k_occupied = 0.95;    ///< largest occupancy one key frame can add to a cell
+  double k_confidence = 0.95;  ///< largest confidence one key frame can add to a cell
+  double lambda = 1;  ///< how much a local map revises the contrary belief of the global one; 0: plain union
 
   double sigma_disparity_px = 0.25;  ///< noise of a measured disparity: width of the occupied band
   double sigma_max_m = 0.30;         ///< points lose their say about the range where depth noise reaches this
