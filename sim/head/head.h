@@ -31,7 +31,7 @@ struct HeadMount {
 
 /// First sensor model: shot noise (variance proportional to grey value) and read noise, 8-bit quantisation.
 struct HeadNoise {
-  double read_grey = 1.5;           ///< standard deviation in the dark [grey levels]
+  double read_grey = 1.5;             ///< standard deviation in the dark [grey levels]
   double shot_grey_per_level = 0.01;  ///< variance added per grey level [grey^2 / grey]
 
   template <class Archive>
@@ -78,8 +78,8 @@ struct HeadModel {
 /// @throws InputError
 HeadModel load_head(const std::string& file);
 
-/// Turns rendered grey images (CV_8UC1) into what the sensor delivers, in place. Every pixel's noise depends only
-/// on (seed, camera, frame, pixel): any frame can be made again alone.
+/// Turns rendered grey images (CV_8UC1) into what the sensor delivers, in place. Every pixel's noise depends
+/// only on (seed, camera, frame, pixel): any frame can be made again alone.
 /// @param camera 0 left, 1 right
 void apply_sensor_noise(const HeadNoise& noise, uint64_t seed, int camera, int64_t frame, cv::Mat& image);
 
