@@ -18,7 +18,7 @@ struct FrameNotes {
   double position_error_m;
 };
 
-// Writers of the run folder's files (design.md section 4). bench/report/run_folder.h reads them. All numbers
+// Writers of the run folder's files (README.md lists them). bench/report/run_folder.h reads them. All numbers
 // are written so that they read back exactly. All throw InputError when a file cannot be written.
 
 void write_run_json(const std::string& file, const RunHeader& header);

@@ -176,7 +176,7 @@ struct Expectation {
   void check(ConfigReader& reader) const;
 };
 
-/// `expect:`: metrics of design.md section 6 with bounds, or `outcome: lost` for a run that must fail.
+/// `expect:`: metrics (docs/metrics.md) with bounds, or `outcome: lost` for a run that must fail.
 struct Expectations {
   std::string outcome = "tracked";  ///< "tracked" or "lost"
   std::map<std::string, Expectation> metrics;

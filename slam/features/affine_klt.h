@@ -65,8 +65,8 @@ enum class KltStatus { kTracked, kOutside, kDegenerate, kPoorMatch };
 /// gain and bias free throughout (patches are compared mean-free and of unit norm).
 ///
 /// Inverse compositional: the template's gradients and Hessian are those of the first view; each step p from
-/// H^-1 J^T r is inverted and composed, A <- A D^-1, uv <- uv - A (p1, p2) (facts.md section 8; Baker &
-/// Matthews).
+/// H^-1 J^T r is inverted and composed, A <- A D^-1, uv <- uv - A (p1, p2) (Baker and
+/// Matthews, IJCV 56(3), 2004).
 ///
 /// @param state in: the predicted position and shape; out: the result, valid when kTracked
 /// @param start_level  coarsest level to use; with a good prediction 1 is enough

@@ -45,7 +45,7 @@ class StereoMatcher {
 };
 
 /// Measurement (u_left, v, u_right) of a matched pair. The point that minimises the image-plane error of a
-/// rectified pair has the mean of the two rows and unchanged columns (Hartley & Sturm; facts.md section 6).
+/// rectified pair has the mean of the two rows and unchanged columns (Hartley and Sturm, CVIU 68(2), 1997).
 Eigen::Vector3d optimal_measurement(const Eigen::Vector2f& left_px, const Eigen::Vector2f& right_px);
 
 }  // namespace groundloop::slam

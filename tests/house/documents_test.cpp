@@ -61,6 +61,19 @@ TEST(Documents, NameOnlyFilesThatExist) {
   }
 }
 
+TEST(Sources, NameOnlyDocumentsThatExist) {
+  const std::regex name(R"(\b([A-Za-z0-9_][A-Za-z0-9_/-]*\.md)\b)");
+  const fs::path root = GROUNDLOOP_ROOT;
+  for (const char* folder : {"slam", "sim", "bench", "tests", "models"}) {
+    for (const fs::path& file : tree_files(folder, {".h", ".cpp"})) {
+      for (const std::string& document : matches_of(tree_text(file), name)) {
+        EXPECT_TRUE(fs::exists(root / document) || fs::exists(root / "docs" / document))
+            << file << " names " << document;
+      }
+    }
+  }
+}
+
 /// Rows of docs/paper-to-code.md are `| section | what | [file](../file) | names in backticks | ... |`.
 TEST(Documents, PaperToCodeNamesWhatTheFilesHold) {
   const std::regex row(R"(^\|[^|]+\|[^|]+\| \[`?([^\]`]+)`?\]\([^)]+\) \|([^|]+)\|)");
