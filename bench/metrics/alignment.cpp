@@ -20,7 +20,7 @@ Alignment align_points(const Eigen::Matrix3Xd& p_truth, const Eigen::Matrix3Xd& 
   const Eigen::Matrix3d covariance =  // Eq. (38)
       (p_truth.colwise() - mean_truth) * centred_map.transpose() / n;
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d d = svd.singularValues();
+  const Eigen::Vector3d& d = svd.singularValues();
 
   // Eq. (43): the reflection is undone along the weakest axis
   Eigen::Vector3d sign(1, 1, 1);
