@@ -111,6 +111,7 @@ int run_scenarios(const RunOptions& options) {
   }
   if (!options.junit.empty()) {
     std::vector<JudgedRun> judged;
+    judged.reserve(runs.size());
     for (const RunOutcome& run : runs) judged.push_back({run.name, run.seed, run.wall_s, run.verdict});
     write_junit(options.junit, "groundloop", judged);
   }
@@ -134,6 +135,7 @@ struct RawArguments {
 
 std::vector<sim::Override> overrides_of(const std::vector<std::string>& texts) {
   std::vector<sim::Override> overrides;
+  overrides.reserve(texts.size());
   for (const std::string& text : texts) overrides.push_back(parse_override(text));
   return overrides;
 }
