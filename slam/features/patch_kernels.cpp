@@ -13,6 +13,11 @@ static_assert(kPatchStride == 2 * kLanes);
 /// Two horizontally neighbouring 16-bit pixels read at once; pixels are only 2-byte aligned.
 typedef int32_t __attribute__((aligned(2), may_alias)) PixelPair;
 
+inline float low_pixel(int32_t pair) {
+  return static_cast<float>(static_cast<int32_t>(static_cast<uint32_t>(pair) << 16) >> 16);
+}
+inline float high_pixel(int32_t pair) { return static_cast<float>(pair >> 16); }
+
 inline float sum_of(const float* lanes) {
   return ((lanes[0] + lanes[4]) + (lanes[1] + lanes[5])) + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]));
 }
@@ -26,23 +31,33 @@ alignas(32) constexpr float kX[kPatchStride] = {-7, -6, -5, -4, -3, -2, -1, 0, 1
 GROUNDLOOP_MULTIVERSION
 void warp_patch(const int16_t* image, ptrdiff_t stride, float u, float v, const float A[4], float* patch) {
   const int pitch = static_cast<int>(stride);
+  const float a00 = A[0], a01 = A[1], a10 = A[2], a11 = A[3];
   for (int row = 0; row < kPatchSize; ++row) {
     const auto y = static_cast<float>(row - kPatchHalf);
-    const float u_row = u + A[1] * y, v_row = v + A[3] * y;
+    const float u_row = u + a01 * y, v_row = v + a11 * y;
     float* out = patch + row * kPatchStride;
+    // Three short loops, so that only the loads in the middle are one by one.
+    alignas(32) int offset[kPatchStride];
+    alignas(32) float fu[kPatchStride], fv[kPatchStride];
+#pragma GCC unroll 1  // unrolled whole, it would not be vectorised
     for (int i = 0; i < kPatchStride; ++i) {
-      const float uu = u_row + A[0] * kX[i], vv = v_row + A[2] * kX[i];
+      const auto x = static_cast<float>(i - kPatchHalf);
+      const float uu = u_row + a00 * x, vv = v_row + a10 * x;
       const int iu = static_cast<int>(uu), iv = static_cast<int>(vv);
-      const float fu = uu - static_cast<float>(iu), fv = vv - static_cast<float>(iv);
-      const int offset = iv * pitch + iu;
-      const int32_t top = *reinterpret_cast<const PixelPair*>(image + offset);
-      const int32_t bottom = *reinterpret_cast<const PixelPair*>(image + offset + pitch);
-      const auto top_left = static_cast<float>(static_cast<int32_t>(static_cast<uint32_t>(top) << 16) >> 16);
-      const auto bottom_left =
-          static_cast<float>(static_cast<int32_t>(static_cast<uint32_t>(bottom) << 16) >> 16);
-      const float upper = top_left + fu * (static_cast<float>(top >> 16) - top_left);
-      const float lower = bottom_left + fu * (static_cast<float>(bottom >> 16) - bottom_left);
-      out[i] = upper + fv * (lower - upper);
+      fu[i] = uu - static_cast<float>(iu);
+      fv[i] = vv - static_cast<float>(iv);
+      offset[i] = iv * pitch + iu;
+    }
+    alignas(32) int32_t top[kPatchStride], bottom[kPatchStride];
+    for (int i = 0; i < kPatchStride; ++i) {
+      top[i] = *reinterpret_cast<const PixelPair*>(image + offset[i]);
+      bottom[i] = *reinterpret_cast<const PixelPair*>(image + offset[i] + pitch);
+    }
+    for (int i = 0; i < kPatchStride; ++i) {
+      const float top_left = low_pixel(top[i]), bottom_left = low_pixel(bottom[i]);
+      const float upper = top_left + fu[i] * (high_pixel(top[i]) - top_left);
+      const float lower = bottom_left + fu[i] * (high_pixel(bottom[i]) - bottom_left);
+      out[i] = upper + fv[i] * (lower - upper);
     }
   }
 }
