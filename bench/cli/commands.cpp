@@ -7,6 +7,7 @@ void add_commands(CLI::App& app, CommandAction& action) {
   add_replay_command(app, action);
   add_eval_command(app, action);
   add_validate_command(app, action);
+  add_preview_command(app, action);
   add_list_command(app, action);
 }
 

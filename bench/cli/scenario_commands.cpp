@@ -9,6 +9,7 @@
 
 #include "bench/cli/commands.h"
 #include "bench/cli/scenario_check.h"
+#include "bench/runner/preview.h"
 #include "bench/verdict/verdict.h"
 #include "sim/scenario/scenario.h"
 
@@ -93,6 +94,21 @@ void add_validate_command(CLI::App& app, CommandAction& action) {
   command->add_option("scenario", *files, "scenario files")->required()->type_name("FILE");
   command->add_flag("--json", *json, "print JSON");
   command->callback([=, &action] { action = [=] { return validate(*files, *json); }; });
+}
+
+void add_preview_command(CLI::App& app, CommandAction& action) {
+  CLI::App* command =
+      app.add_subcommand("preview", "picture of a scenario: scene and planned path from above");
+  const auto file = std::make_shared<std::string>();
+  const auto out = std::make_shared<std::string>();
+  command->add_option("scenario", *file, "scenario file")->required()->type_name("FILE");
+  command->add_option("--out", *out, "picture to write (default: NAME.png)")->type_name("PNG");
+  command->callback([=, &action] {
+    action = [=] {
+      fmt::print("{}\n", preview(sim::load_scenario(*file), *out));
+      return exit_code(Outcome::kPass);
+    };
+  });
 }
 
 void add_list_command(CLI::App& app, CommandAction& action) {

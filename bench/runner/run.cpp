@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <opencv2/imgcodecs.hpp>
 #include <thread>
 
 #include "bench/metrics/alignment.h"
@@ -17,8 +18,10 @@
 #include "bench/report/report.h"
 #include "bench/runner/core_files.h"
 #include "bench/runner/core_run.h"
+#include "bench/runner/exact_scene.h"
 #include "bench/runner/figure_recorder.h"
 #include "bench/runner/output_folder.h"
+#include "bench/runner/preview.h"
 #include "bench/runner/provenance.h"
 #include "bench/runner/run_files.h"
 #include "bench/runner/run_header.h"
@@ -33,8 +36,6 @@
 namespace groundloop::bench {
 namespace {
 
-constexpr double kBandMin_m = 0.02;  // of the exact map: above the floor, up to 2 m as the paper's
-constexpr double kBandMax_m = 2.0;
 constexpr double kSight_m = 8.0;   // how far a cell may be to count as seen
 constexpr size_t kSightEvery = 5;  // frames between the poses whose sight is cast
 
@@ -42,13 +43,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// The exact scene, standing as at the start.
-sim::TruthWorld truth_of(const sim::World& world) {
-  const sim::World::DataPtr data = world.make_data();
-  mj_forward(&world.model(), data.get());
-  return sim::TruthWorld(world, *data);
 }
 
 slam::Trajectory left_truth(const SimulatedSource& source, size_t frames) {
@@ -89,14 +83,13 @@ slam::OccupancyMap map_at_true_poses(const slam::Pipeline& core, const slam::Ste
 
 void write_truth(const OutputFolder& out, const ExactMap& exact, const sim::TruthWorld& world) {
   slam::write_map(out.file("truth_map"), exact.map);
+  // As it is scored: a free cell that a ray crossed, an occupied one whose face was seen.
   slam::OccupancyMap visible{exact.map.geometry, {}};
-  for (const uint8_t seen : exact.sight) visible.value.push_back(seen != 0 ? 1.0F : 0.0F);
-  slam::write_map(out.file("visible"), visible);
-  std::vector<Footprint> outline;
-  for (const sim::Outline& footprint : world.footprints(kBandMin_m, kBandMax_m)) {
-    outline.push_back({footprint.name, footprint.polygon});
+  for (size_t i = 0; i < exact.sight.size(); ++i) {
+    visible.value.push_back(exact.sight[i] > (exact.map.value[i] > 0 ? 1 : 0) ? 1.0F : 0.0F);
   }
-  write_outline_json(out.file("outline.json"), outline);
+  slam::write_map(out.file("visible"), visible);
+  write_outline_json(out.file("outline.json"), scene_outline(world));
 }
 
 RunHeader header_of(const sim::Scenario& scenario, const Metrics& metrics, const Verdict& verdict,
@@ -133,7 +126,7 @@ RunOutcome run_scenario(const sim::Scenario& scenario, std::optional<int64_t> fr
 
   // drive, see, process
   slam::Pipeline core(rig, options);
-  const sim::TruthWorld truth_world = truth_of(world);
+  const sim::TruthWorld truth_world = exact_scene(world);
   StageJudge stages(truth_world, rig);
   FigureRecorder figures(rig, *source.size());
   std::vector<FrameNotes> notes;
@@ -189,6 +182,7 @@ RunOutcome run_scenario(const sim::Scenario& scenario, std::optional<int64_t> fr
   write_frames_csv(out.file("frames.csv"), core_run.frames, notes);
   write_metrics_json(out.file("metrics.json"), metrics);
   figures.write(out.file("figures"));
+  cv::imwrite(out.file("figures/preview.png"), preview_picture(truth_world, source.simulation()));
   RunHeader header = header_of(scenario, metrics, outcome.verdict, source.renderer_info());
   header.frames = static_cast<int64_t>(core_run.frames.size());
   write_run_json(out.file("run.json"), header);
@@ -206,9 +200,10 @@ std::vector<RunOutcome> run(const RunOptions& options, const JobControl& control
       const sim::Scenario scenario = sim::load_scenario(file, options.set);
       slam_options(scenario);
       const SeedRange seeds = options.seeds.value_or(SeedRange{scenario.seed, scenario.seed});
-      for (uint64_t seed = seeds.first; seed <= seeds.last; ++seed) {
+      for (uint64_t seed = seeds.first;; ++seed) {
         scenarios.push_back(scenario);
         scenarios.back().seed = seed;
+        if (seed == seeds.last) break;
       }
     } catch (const InputError& error) {
       problems.insert(problems.end(), error.problems().begin(), error.problems().end());

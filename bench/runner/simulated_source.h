@@ -40,7 +40,7 @@ class SimulatedSource : public slam::StereoSource {
   const FrameTruth& truth(int64_t index) const { return truth_[static_cast<size_t>(index)]; }
   /// Known once the first pair was delivered.
   const sim::RendererInfo& renderer_info() const { return renderer_info_; }
-  double planned_length_m() const { return simulation_.planned_length_m(); }
+  const sim::Simulation& simulation() const { return simulation_; }
 
  private:
   const sim::Scenario& scenario_;

@@ -6,7 +6,7 @@ namespace groundloop::sim {
 
 /// Every metric the bench computes, in the order of its tables. The same names stand in `expect:`,
 /// metrics.json, JUnit and the report.
-inline constexpr std::array<const char*, 37> kMetricNames = {"trajectory.ate_rmse_m",
+inline constexpr std::array<const char*, 40> kMetricNames = {"trajectory.ate_rmse_m",
                                                              "trajectory.ate_max_m",
                                                              "trajectory.rpe_trans_percent",
                                                              "trajectory.rpe_rot_deg_per_m",
@@ -15,6 +15,9 @@ inline constexpr std::array<const char*, 37> kMetricNames = {"trajectory.ate_rms
                                                              "trajectory.length_m",
                                                              "trajectory.lost_frames",
                                                              "trajectory.completeness",
+                                                             "trajectory.drift_5m_percent",
+                                                             "trajectory.planar_rmse_m",
+                                                             "trajectory.planar_max_m",
                                                              "map.f1",
                                                              "map.iou",
                                                              "map.mcc",

@@ -181,6 +181,9 @@ std::optional<Exposure> Simulation::advance() {
 
 int64_t Simulation::exposures() const { return impl_->exposures; }
 double Simulation::planned_length_m() const { return impl_->path.length_m(); }
+slam::Pose Simulation::planned_T_world_body(double time_s) const {
+  return to_pose(impl_->path.at(time_s).T_world_body);
+}
 double Simulation::planned_duration_s() const { return impl_->path.duration_s(); }
 
 }  // namespace groundloop::sim

@@ -47,6 +47,8 @@ class Simulation {
   int64_t exposures() const;
   /// Length of the planned path [m].
   double planned_length_m() const;
+  /// Where the plan puts the robot's body frame at a time from 0 to planned_duration_s().
+  slam::Pose planned_T_world_body(double time_s) const;
   /// Time the plan takes [s].
   double planned_duration_s() const;
 

@@ -164,7 +164,14 @@ void write_octomap(const std::string& file, const std::vector<OccupancyMap>& lay
     }
   }
   tree.updateInnerOccupancy();
-  write_file_atomically(file, [&](std::ostream& out) { tree.writeBinary(out); });
+  // OcTree::writeBinary would say so on the terminal; its header is this.
+  write_file_atomically(file, [&](std::ostream& out) {
+    out << "# Octomap OcTree binary file\n# (feel free to add / change comments, but leave the first line as "
+           "it is!)\n"
+        << "#\nid " << tree.getTreeType() << "\nsize " << tree.size() << "\nres " << tree.getResolution()
+        << "\ndata\n";
+    tree.writeBinaryData(out);
+  });
 }
 
 }  // namespace groundloop::slam
