@@ -44,11 +44,12 @@ struct Pipeline::Impl {
   void start_segment(const StereoFrame& frame, StageClock& clock, FrameResult& result);
   void make_key_frame(const StereoFrame& frame, StageClock& clock, FrameResult& result);
   void reconstruct();
-  void add_features(const StereoFrame& frame, StageClock& clock);
+  void add_features(const StereoFrame& frame, StageClock& clock, FrameResult& result);
   void measure_key_frame(int64_t frame_index);
   bool wants_key_frame(const FrameResult& result) const;
   void update_map(const StereoFrame& frame, const Matrix6d& covariance);
   void update_cloud(const StereoFrame& frame);
+  void note(const Feature& feature, bool is_new, FrameResult& result) const;
   void record(const StereoFrame& frame, FrameResult& result);
   Pose predicted_T_kf_left(const StereoFrame& frame) const;
   void check(const StereoFrame& frame) const;
@@ -163,6 +164,9 @@ void Pipeline::Impl::track_frame(const StereoFrame& frame, StageClock& clock, Fr
   }
   rotation.remember(left);
 
+  for (const Feature& feature : tracker.features()) {
+    if (feature.in_left) note(feature, false, result);
+  }
   result.features_tracked = static_cast<int>(pairs.size());
   result.inliers = registered.inliers;
   result.residual_px = registered.residual_px;
@@ -208,7 +212,7 @@ void Pipeline::Impl::start_segment(const StereoFrame& frame, StageClock& clock, 
   T_map_kf = first ? rig.T_body_left : T_map_kf * T_kf_left;
   T_kf_left.setIdentity();
   tracker.clear();
-  add_features(frame, clock);
+  add_features(frame, clock, result);
   rotation.remember(left);
   measure_key_frame(frame.index);
   if (static_cast<int>(kf_features) < options.registration.min_inliers) {
@@ -234,7 +238,7 @@ void Pipeline::Impl::make_key_frame(const StereoFrame& frame, StageClock& clock,
   T_kf_left.setIdentity();
   tracker.remove_if([](const Feature& f) { return !f.in_right || !f.is_inlier; });
   reconstruct();
-  add_features(frame, clock);
+  add_features(frame, clock, result);
   measure_key_frame(frame.index);
   result.is_key_frame = true;
   update_map(frame, result.covariance);
@@ -255,7 +259,7 @@ void Pipeline::Impl::reconstruct() {
 }
 
 /// New features, their match in the right image and their first reconstruction. Sections 2.1 and 2.2.
-void Pipeline::Impl::add_features(const StereoFrame& frame, StageClock& clock) {
+void Pipeline::Impl::add_features(const StereoFrame& frame, StageClock& clock, FrameResult& result) {
   occupied.clear();
   for (const Feature& feature : tracker.features()) occupied.push_back(feature.left.uv_px);
   const int wanted = options.tracking.max_features - static_cast<int>(occupied.size());
@@ -276,6 +280,9 @@ void Pipeline::Impl::add_features(const StereoFrame& frame, StageClock& clock) {
     feature->key_frames = 1;
   }
   tracker.remove_if([](const Feature& f) { return !f.in_right; });
+  for (const Feature& feature : tracker.features()) {
+    if (feature.key_frames == 1) note(feature, true, result);
+  }
   clock.lap(Stage::kStereo);
 }
 
@@ -302,15 +309,15 @@ Pose Pipeline::Impl::predicted_T_kf_left(const StereoFrame& frame) const {
   return T_kf_left * frame.T_previous_left.value_or(T_previous_left);
 }
 
+void Pipeline::Impl::note(const Feature& feature, bool is_new, FrameResult& result) const {
+  result.features.push_back({feature.id, feature.left.uv_px.x(), feature.left.uv_px.y(),
+                             feature.right.uv_px.x(), feature.right.uv_px.y(), feature.in_right, is_new,
+                             feature.is_inlier});
+}
+
 void Pipeline::Impl::record(const StereoFrame& frame, FrameResult& result) {
   result.segment = segment;
   result.T_map_left = T_map_kf * T_kf_left;
-  result.features.reserve(tracker.features().size());
-  for (const Feature& f : tracker.features()) {
-    if (!f.in_left) continue;
-    result.features.push_back({f.id, f.left.uv_px.x(), f.left.uv_px.y(), f.right.uv_px.x(), f.right.uv_px.y(),
-                               f.in_right, f.key_frames == 1 && result.is_key_frame, f.is_inlier});
-  }
   result.state_hash = state_hash(result);
   trajectory.push_back({frame.stamp_ns, result.T_map_left});
 }
