@@ -1,0 +1,151 @@
+#include "slam/stereo/matcher.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/calib3d.hpp>
+
+#include "tests/slam/features/texture.h"
+
+namespace groundloop::slam {
+namespace {
+
+const cv::Size kSize(320, 240);
+
+StereoRig rig_of_size() {
+  StereoRig rig;
+  rig.width_px = kSize.width;
+  rig.height_px = kSize.height;
+  rig.fx_px = rig.fy_px = 300;
+  rig.cx_px = rig.cx_right_px = 159.5;
+  rig.cy_px = 119.5;
+  rig.baseline_m = 0.1;
+  return rig;
+}
+
+/// A wall that the right image has `disparity_px` to the left and `rows_px` lower.
+struct Wall {
+  Wall(double disparity_px, double rows_px) {
+    const Texture texture(5, 9, 60);
+    left = draw(kSize, {}, [&](int u, int v) { return texture.at(u, v); });
+    right = draw(kSize, {}, [&](int u, int v) { return texture.at(u + disparity_px, v - rows_px); });
+    left_pyramid.build(left, 4);
+    right_pyramid.build(right, 4);
+  }
+  cv::Mat left, right;
+  ImagePyramid left_pyramid, right_pyramid;
+};
+
+/// Matches features all over the wall; every match must be right.
+struct Matches {
+  int asked = 0, found = 0;
+};
+Matches match_all(const Wall& wall, const StereoOptions& options, const DenseDisparity& dense,
+                  const Eigen::Vector2d& exact_offset) {
+  const StereoMatcher matcher(rig_of_size(), options, {});
+  Matches matches;
+  PatchTemplate patch;
+  for (int v = 40; v < 200; v += 23) {
+    for (int u = 100; u < 290; u += 23) {
+      const Eigen::Vector2f at(static_cast<float>(u), static_cast<float>(v));
+      if (!patch.take(wall.left_pyramid, at, 4)) continue;
+      ++matches.asked;
+      AffineState left;
+      left.uv_px = at;
+      const auto right = matcher.match(patch, left, dense, wall.right_pyramid);
+      if (!right) continue;
+      ++matches.found;
+      EXPECT_LT((right->uv_px.cast<double>() - at.cast<double>() - exact_offset).norm(), 0.06);
+    }
+  }
+  EXPECT_GT(matches.asked, 40);
+  return matches;
+}
+
+DenseDisparity dense_of(const Wall& wall) {
+  DenseDisparity dense({});
+  dense.compute(wall.left, wall.right);
+  return dense;
+}
+
+TEST(StereoMatcher, FindsAKnownShift) {
+  for (const double disparity_px : {3.3, 17.6, 41.25}) {
+    const Wall wall(disparity_px, 0);
+    const Matches m = match_all(wall, {}, dense_of(wall), {-disparity_px, 0});
+    EXPECT_GT(m.found, 0.95 * m.asked) << disparity_px;
+  }
+}
+
+TEST(StereoMatcher, RowsMustAgreeWithinTheGate) {
+  const Wall within(20, 0.7), beyond(20, 1.4);
+  const Matches near = match_all(within, {}, dense_of(within), {-20, 0.7});
+  EXPECT_GT(near.found, 0.9 * near.asked);
+  EXPECT_EQ(match_all(beyond, {}, dense_of(beyond), {-20, 1.4}).found, 0);
+  StereoOptions wide;
+  wide.epipolar_gate_px = 2;
+  const Matches all = match_all(beyond, wide, dense_of(beyond), {-20, 1.4});
+  EXPECT_GT(all.found, 0.8 * all.asked);
+}
+
+TEST(StereoMatcher, TheDistanceThatCarriesNoDepthIsRefused) {
+  const Wall wall(3, 0);
+  StereoOptions options;
+  options.min_disparity_px = 3.5;
+  EXPECT_EQ(match_all(wall, options, dense_of(wall), {-3, 0}).found, 0);
+  options.min_disparity_px = 2.5;
+  EXPECT_GT(match_all(wall, options, dense_of(wall), {-3, 0}).found, 30);
+}
+
+TEST(StereoMatcher, WhatIsFarFromTheDenseMapIsAnotherSurface) {
+  const Wall seen(22.5, 0);
+  const DenseDisparity other = dense_of(Wall(20, 0));
+  StereoOptions strict;
+  strict.max_prediction_error_px = 1;
+  EXPECT_EQ(match_all(seen, strict, other, {-22.5, 0}).found, 0);
+  EXPECT_GT(match_all(seen, {}, other, {-22.5, 0}).found, 30);
+}
+
+TEST(StereoMatcher, NothingDenseNothingMatched) {
+  const Wall wall(20, 0);
+  const DenseDisparity nothing({});
+  EXPECT_EQ(match_all(wall, {}, nothing, {-20, 0}).found, 0);
+}
+
+TEST(StereoMatcher, PlausibleCountsFromInfinity) {
+  StereoRig rig = rig_of_size();
+  rig.cx_right_px = rig.cx_px - 10;  // points at infinity have a disparity of 10
+  const StereoMatcher matcher(rig, {}, {});
+  EXPECT_TRUE(matcher.plausible({100, 50}, {85, 50.9F}));
+  EXPECT_FALSE(matcher.plausible({100, 50}, {85, 51.1F}));
+  EXPECT_FALSE(matcher.plausible({100, 50}, {85, 48.9F}));
+  EXPECT_TRUE(matcher.plausible({100, 50}, {88.9F, 50}));
+  EXPECT_FALSE(matcher.plausible({100, 50}, {89.1F, 50}));
+  EXPECT_FALSE(matcher.plausible({100, 50}, {110, 50}));
+  EXPECT_FALSE(matcher.plausible({std::nanf(""), 50}, {85, 50}));
+}
+
+TEST(OptimalMeasurement, IsTheOptimalTriangulationOfARectifiedPair) {
+  // OpenCV solves Hartley and Sturm's problem for any geometry; x_right^T F x_left = y_left - y_right.
+  const cv::Matx33d F(0, 0, 0, 0, 0, -1, 0, 1, 0);
+  std::vector<cv::Point2d> left, right, best_left, best_right;
+  for (uint64_t i = 0; i < 200; ++i) {
+    // Steps of 1 / 1024 px are exact in float.
+    const auto coordinate = [i](uint64_t stream, uint32_t range_px) {
+      return random_index(random_bits(3, stream, i), range_px * 1024) / 1024.0;
+    };
+    const double u = coordinate(1, 640), v = coordinate(2, 480);
+    left.emplace_back(u, v);
+    right.emplace_back(u - coordinate(3, 100), v + coordinate(4, 4) - 2);
+  }
+  cv::correctMatches(F, left, right, best_left, best_right);
+  for (size_t i = 0; i < left.size(); ++i) {
+    const Eigen::Vector3d uvu = optimal_measurement(Eigen::Vector2d(left[i].x, left[i].y).cast<float>(),
+                                                    Eigen::Vector2d(right[i].x, right[i].y).cast<float>());
+    EXPECT_NEAR(uvu.x(), best_left[i].x, 1e-9);
+    EXPECT_NEAR(uvu.y(), best_left[i].y, 1e-9);
+    EXPECT_NEAR(uvu.y(), best_right[i].y, 1e-9);
+    EXPECT_NEAR(uvu.z(), best_right[i].x, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace groundloop::slam
