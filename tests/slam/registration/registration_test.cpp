@@ -76,7 +76,7 @@ struct Rms {
   double lateral_m = 0, forward_m = 0, yaw_rad = 0;
 };
 
-/// The Monte Carlo of facts.md section 7: rms errors of one step.
+/// Monte Carlo of one step with the head of a Pioneer: rms errors.
 Rms monte_carlo(RegistrationCost cost, double outliers, int trials) {
   const StereoRig rig = head();
   RegistrationOptions options;
@@ -207,7 +207,7 @@ TEST(Registration, TheWholeCovarianceBeatsTheScalarByFarAndDistancesRankAsTheFac
   EXPECT_GT(quadratic.lateral_m, 5 * full.lateral_m);
   EXPECT_GT(quadratic.forward_m, 3 * full.forward_m);
   EXPECT_LT(linear.yaw_rad, quadratic.yaw_rad);
-  // facts.md section 7, with room for points that lie otherwise
+  // as an earlier study of these costs found, with room for points that lie otherwise
   EXPECT_LT(full.yaw_rad, 0.0060 * kDeg);
   EXPECT_LT(full.forward_m, 0.6e-3);
   EXPECT_LT(quadratic.yaw_rad, 0.2 * kDeg);
