@@ -50,22 +50,29 @@ struct Field {
   const char* doc = "";
 };
 
-/// Specialise for every enum that appears in a file: static constexpr std::array<std::pair<E, const char*>, N> names.
+/// Specialise for every enum that appears in a file: static constexpr std::array<std::pair<E, const char*>,
+/// N> names.
 template <class E>
 struct EnumNames;
 
 class ConfigReader;
 template <class T>
-concept Visitable = requires(T& value, ConfigReader& reader) { value.visit(reader); };
+concept Visitable = requires(T& value, ConfigReader& reader) {
+  value.visit(reader);
+};
 template <class T>
-concept Checkable = requires(const T& value, ConfigReader& reader) { value.check(reader); };
+concept Checkable = requires(const T& value, ConfigReader& reader) {
+  value.check(reader);
+};
 
-/// Reads one YAML map into a struct. Missing keys keep the struct's value; unknown keys, wrong types and values
-/// out of range are collected. A struct may add `void check(ConfigReader&) const` for rules over several keys.
+/// Reads one YAML map into a struct. Missing keys keep the struct's value; unknown keys, wrong types and
+/// values out of range are collected. A struct may add `void check(ConfigReader&) const` for rules over
+/// several keys.
 class ConfigReader {
  public:
   /// @param path   dotted key of this map inside the file, "" at the root
-  /// @param line   line to report for nodes without a mark of their own (values that came from a command line)
+  /// @param line   line to report for nodes without a mark of their own (values that came from a command
+  /// line)
   ConfigReader(const YAML::Node& node, std::string file, std::string path, std::vector<Problem>* problems,
                int line = 0);
 
@@ -127,20 +134,28 @@ struct IsStringMap<std::map<std::string, T>> : std::true_type {};
 template <class E>
 std::string enum_choices() {
   std::string text;
-  for (const auto& [value, name] : EnumNames<E>::names) text += (text.empty() ? "" : ", ") + std::string(name);
+  for (const auto& [value, name] : EnumNames<E>::names)
+    text += (text.empty() ? "" : ", ") + std::string(name);
   return "one of: " + text;
 }
 }  // namespace config_detail
 
 template <class T>
 std::string ConfigReader::describe(const T&, const Field& field) {
-  if constexpr (std::is_enum_v<T>) return config_detail::enum_choices<T>();
-  else if constexpr (std::is_same_v<T, bool>) return "true or false";
-  else if constexpr (std::is_integral_v<T>) return describe_range("a whole number", field);
-  else if constexpr (std::is_floating_point_v<T>) return describe_range("a number", field);
-  else if constexpr (std::is_same_v<T, std::string>) return "a text";
-  else if constexpr (config_detail::IsVector<T>::value) return "a list";
-  else return "a map of keys and values";
+  if constexpr (std::is_enum_v<T>)
+    return config_detail::enum_choices<T>();
+  else if constexpr (std::is_same_v<T, bool>)
+    return "true or false";
+  else if constexpr (std::is_integral_v<T>)
+    return describe_range("a whole number", field);
+  else if constexpr (std::is_floating_point_v<T>)
+    return describe_range("a number", field);
+  else if constexpr (std::is_same_v<T, std::string>)
+    return "a text";
+  else if constexpr (config_detail::IsVector<T>::value)
+    return "a list";
+  else
+    return "a map of keys and values";
 }
 
 template <class T>
@@ -205,11 +220,12 @@ void read_config(const YAML::Node& node, const std::string& file, T& value, std:
   if constexpr (Checkable<T>) value.check(reader);
 }
 
-/// Sets one value by its dotted key, as in `--set tracking.max_features=400`. `origin` and `line` go into messages.
+/// Sets one value by its dotted key, as in `--set tracking.max_features=400`. `origin` and `line` go into
+/// messages.
 YAML::Node nested_node(const std::string& dotted_key, const YAML::Node& value);
 template <Visitable T>
-void set_by_key(T& value, const std::string& dotted_key, const YAML::Node& new_value, const std::string& origin,
-                int line, std::vector<Problem>& problems) {
+void set_by_key(T& value, const std::string& dotted_key, const YAML::Node& new_value,
+                const std::string& origin, int line, std::vector<Problem>& problems) {
   ConfigReader reader(nested_node(dotted_key, new_value), origin, "", &problems, line);
   reader.set_overlay(true);
   value.visit(reader);

@@ -4,10 +4,14 @@ namespace groundloop::slam {
 
 const char* name_of(TrackingStatus status) {
   switch (status) {
-    case TrackingStatus::kNotRun: return "not_run";
-    case TrackingStatus::kStarted: return "started";
-    case TrackingStatus::kTracking: return "tracking";
-    case TrackingStatus::kLost: return "lost";
+    case TrackingStatus::kNotRun:
+      return "not_run";
+    case TrackingStatus::kStarted:
+      return "started";
+    case TrackingStatus::kTracking:
+      return "tracking";
+    case TrackingStatus::kLost:
+      return "lost";
   }
   return "?";
 }

@@ -18,20 +18,30 @@ enum class TrackingStatus {
 const char* name_of(TrackingStatus status);
 
 /// The stages whose time is measured in every frame, in the order in which they run.
-enum class Stage { kPyramid, kTracking, kRegistration, kDetection, kDisparity, kStereo, kMapping, kLoop, kCount };
+enum class Stage {
+  kPyramid,
+  kTracking,
+  kRegistration,
+  kDetection,
+  kDisparity,
+  kStereo,
+  kMapping,
+  kLoop,
+  kCount
+};
 inline constexpr size_t kStageCount = static_cast<size_t>(Stage::kCount);
 const char* name_of(Stage stage);
 
 /// One feature as seen in one frame.
 struct FeatureObservation {
-  int64_t id = 0;            ///< the same number as long as the feature lives; never used again
+  int64_t id = 0;  ///< the same number as long as the feature lives; never used again
   float u_left_px = 0;
   float v_left_px = 0;
   float u_right_px = 0;
   float v_right_px = 0;
-  bool has_right = false;    ///< left-right matched in this frame
-  bool is_new = false;       ///< detected in this frame
-  bool is_inlier = false;    ///< agreed with the registered motion
+  bool has_right = false;  ///< left-right matched in this frame
+  bool is_new = false;     ///< detected in this frame
+  bool is_inlier = false;  ///< agreed with the registered motion
 };
 
 /// What the core says of one frame.
@@ -39,20 +49,22 @@ struct FrameResult {
   int64_t index = -1;
   int64_t stamp_ns = 0;
   TrackingStatus status = TrackingStatus::kNotRun;
-  std::string message;       ///< why, when the frame is lost; empty otherwise
-  int segment = 0;           ///< rises by one at each recovery from lost
+  std::string message;  ///< why, when the frame is lost; empty otherwise
+  int segment = 0;      ///< rises by one at each recovery from lost
   bool is_key_frame = false;
-  Pose T_map_left = Pose::Identity();  ///< pose as known at this frame; Pipeline::trajectory() holds corrected ones
-  Matrix6d covariance = Matrix6d::Zero();  ///< of the motion since the last key frame, twist in the left camera
+  Pose T_map_left =
+      Pose::Identity();  ///< pose as known at this frame; Pipeline::trajectory() holds corrected ones
+  Matrix6d covariance =
+      Matrix6d::Zero();  ///< of the motion since the last key frame, twist in the left camera
 
   int features_tracked = 0;
   int inliers = 0;
-  double residual_px = 0;    ///< rms reprojection error of the inliers
+  double residual_px = 0;  ///< rms reprojection error of the inliers
 
   std::vector<FeatureObservation> features;
   std::array<double, kStageCount> stage_ms{};  ///< wall time, not part of the determinism promise
   double total_ms = 0;
-  uint64_t state_hash = 0;   ///< over pose and features: the first frame that differs names the divergence
+  uint64_t state_hash = 0;  ///< over pose and features: the first frame that differs names the divergence
 };
 
 }  // namespace groundloop::slam

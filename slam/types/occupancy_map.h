@@ -26,7 +26,8 @@ struct GridGeometry {
   }
 };
 
-/// Occupancy of a horizontal band as one value a cell: 0 free, 0.5 unknown, 1 occupied. Row 0 is the lowest y.
+/// Occupancy of a horizontal band as one value a cell: 0 free, 0.5 unknown, 1 occupied. Row 0 is the lowest
+/// y.
 struct OccupancyMap {
   GridGeometry geometry;
   std::vector<float> value;  ///< geometry.cells() values in [0, 1]

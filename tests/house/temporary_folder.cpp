@@ -1,5 +1,5 @@
-// Linked into every test program: each process has a temporary folder of its own, which goes with it. ctest runs
-// tests of one program at the same time, and they write files of the same names.
+// Linked into every test program: each process has a temporary folder of its own, which goes with it. ctest
+// runs tests of one program at the same time, and they write files of the same names.
 #include <unistd.h>
 
 #include <cstdio>
