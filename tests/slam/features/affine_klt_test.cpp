@@ -152,7 +152,7 @@ TEST_P(TrackAffineWarp, IsFoundFromAnUnwarpedStart) {
   std::sort(errors.shape.begin(), errors.shape.end());
   std::sort(hasty_px.begin(), hasty_px.end());
   ASSERT_GE(errors.features, 30);
-  EXPECT_EQ(errors.position_px.size(), static_cast<size_t>(errors.features));
+  ASSERT_EQ(errors.position_px.size(), static_cast<size_t>(errors.features));
   EXPECT_LT(errors.worst(), 0.08);
   EXPECT_LT(hasty_px[hasty_px.size() / 2], 0.04);
   EXPECT_LT(hasty_px.back(), 0.2);
