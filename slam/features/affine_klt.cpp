@@ -132,6 +132,17 @@ KltStatus align_level(const PatchLevel& level, const cv::Mat& image, const KltOp
   return KltStatus::kTracked;
 }
 
+/// What the match itself says of its precision: its residual, 2 (1 - ncc) over the window as both patches
+/// have unit norm, is the noise; the Hessian turns it into a covariance of position with shape and brightness
+/// left free.
+float position_sigma_px(const PatchLevel& level, const AffineState& state) {
+  const float variance = 2 * std::max(0.0F, 1 - state.ncc) / kArea;
+  const Eigen::Matrix2f C = state.A * level.inverse_hessian.topLeftCorner<2, 2>() * state.A.transpose();
+  const float half_trace = 0.5F * C.trace();
+  const float largest = half_trace + std::sqrt(std::max(0.0F, half_trace * half_trace - C.determinant()));
+  return std::sqrt(variance * largest);
+}
+
 }  // namespace
 
 bool PatchTemplate::take(const ImagePyramid& pyramid, const Eigen::Vector2f& uv_px, int max_levels) {
@@ -158,7 +169,9 @@ KltStatus track_affine(const PatchTemplate& patch, const ImagePyramid& pyramid, 
     state = at_level;
     state.uv_px *= factor;
   }
-  return state.ncc >= options.min_ncc ? KltStatus::kTracked : KltStatus::kPoorMatch;
+  state.sigma_px = position_sigma_px(patch.level[0], state);
+  const bool good = state.ncc >= options.min_ncc && state.sigma_px <= options.max_sigma_px;
+  return good ? KltStatus::kTracked : KltStatus::kPoorMatch;
 }
 
 }  // namespace groundloop::slam

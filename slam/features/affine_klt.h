@@ -14,6 +14,7 @@ struct KltOptions {
   int max_iterations = 12;      ///< per level
   double converged_px = 0.015;  ///< a smaller step ends the iteration
   double min_ncc = 0.85;        ///< least normalised cross-correlation with the first view
+  double max_sigma_px = 0.2;    ///< largest position uncertainty: keeps features from sliding along edges
   double max_scale = 2.0;       ///< det A must stay within [1 / max_scale, max_scale]^2
 
   template <class Archive>
@@ -22,6 +23,7 @@ struct KltOptions {
     a("max_iterations", max_iterations, {.min = 1, .max = 100});
     a("converged_px", converged_px, {.min = 1e-4, .max = 1});
     a("min_ncc", min_ncc, {.min = 0, .max = 1});
+    a("max_sigma_px", max_sigma_px, {.min = 0.001, .max = 100});
     a("max_scale", max_scale, {.min = 1, .max = 10});
   }
 };
@@ -56,7 +58,8 @@ struct PatchTemplate {
 struct AffineState {
   Eigen::Vector2f uv_px = Eigen::Vector2f::Zero();
   Eigen::Matrix2f A = Eigen::Matrix2f::Identity();
-  float ncc = 0;  ///< normalised cross-correlation reached
+  float ncc = 0;       ///< normalised cross-correlation reached
+  float sigma_px = 0;  ///< standard deviation of uv_px in its least certain direction
 };
 
 enum class KltStatus { kTracked, kOutside, kDegenerate, kPoorMatch };

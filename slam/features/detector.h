@@ -12,7 +12,7 @@ namespace groundloop::slam {
 struct DetectionOptions {
   double min_distance_px = 14;  ///< between features
   double quality = 0.005;       ///< least response, relative to the strongest of the image
-  double min_response = 2e-5;   ///< least response, absolute: keeps sensor noise out of flat images
+  double min_response = 2e-5;   ///< least response, absolute; what noise makes beyond it is refused later
 
   template <class Archive>
   void visit(Archive& a) {

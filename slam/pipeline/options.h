@@ -32,6 +32,18 @@ struct KeyFrameOptions {
   }
 };
 
+/// Points of the dense disparity map that join the features' in the occupancy map. YAML: slam.dense_map
+struct DenseMapOptions {
+  int step_px = 8;      ///< distance of the points in the image; 0: features only, as in the paper
+  double weight = 0.3;  ///< trust in one such point, between 0 and 1
+
+  template <class Archive>
+  void visit(Archive& a) {
+    a("step_px", step_px, {.min = 0, .max = 1000});
+    a("weight", weight, {.min = 0, .max = 1});
+  }
+};
+
 /// Every option of the core; YAML keys equal member names (`slam: {set: {tracking.max_features: 400}}`).
 struct SlamOptions {
   uint64_t seed = 1;  ///< of the sampling in registration
@@ -43,6 +55,7 @@ struct SlamOptions {
   RegistrationOptions registration;
   KeyFrameOptions key_frame;
   FlogOptions mapping;
+  DenseMapOptions dense_map;
 
   template <class Archive>
   void visit(Archive& a) {
@@ -55,6 +68,7 @@ struct SlamOptions {
     a("registration", registration);
     a("key_frame", key_frame);
     a("mapping", mapping);
+    a("dense_map", dense_map);
   }
 };
 

@@ -70,6 +70,7 @@ struct Pipeline::Impl {
   RegistrationResult registered;
   std::vector<Eigen::Vector2f> occupied;
   std::vector<double> depths_m;
+  std::vector<Eigen::Vector3f> dense_points;
 
   bool started = false;
   int segment = 0;
@@ -121,6 +122,8 @@ void Pipeline::Impl::process(const StereoFrame& frame, FrameResult& result) {
   clock.lap(Stage::kPyramid);
 
   if (!started) {
+    // While there is nothing to see, the plan goes on.
+    if (!trajectory.empty()) T_kf_left = predicted_T_kf_left(frame);
     start_segment(frame, clock, result);
   } else {
     track_frame(frame, clock, result);
@@ -331,6 +334,13 @@ void Pipeline::Impl::update_map(const StereoFrame& frame, const Matrix6d& covari
     const Eigen::Vector3d uvu = optimal_measurement(feature.left.uv_px, feature.right.uv_px);
     const double trust = std::min(1.0, feature.key_frames / kTrustedAfter);
     record.observations.push_back({uvu.cast<float>(), static_cast<float>(trust)});
+  }
+  if (options.dense_map.step_px > 0) {
+    dense_points.clear();
+    dense.sample(options.dense_map.step_px, dense_points);
+    for (const Eigen::Vector3f& uvu : dense_points) {
+      record.observations.push_back({uvu, static_cast<float>(options.dense_map.weight)});
+    }
   }
   mapper.add(T_map_kf, record.observations);
   key_frames.push_back(std::move(record));

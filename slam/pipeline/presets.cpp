@@ -10,6 +10,11 @@ SlamOptions paper() {
   options.registration.cost = RegistrationCost::kScalarQuadratic;
   options.registration.lorentz_scale = 1;
   options.mapping.fuse_layers = false;
+  options.dense_map.step_px = 0;
+  // Every registration adds its error to the path, and the scalar weights make it a large one: key frames are
+  // fewer than with the whole covariance, and doubtful features are kept for the sake of numbers.
+  options.key_frame.min_tracked_ratio = 0.45;
+  options.klt.max_sigma_px = 0.3;
   return options;
 }
 

@@ -42,6 +42,28 @@ void DenseDisparity::forget_matches_outside() {
   }
 }
 
+void DenseDisparity::sample(int step_px, std::vector<Eigen::Vector3f>& uvu_px) const {
+  constexpr int kReach = 2;
+  constexpr int kSmooth =
+      kFixedPoint;  // neighbours that differ by more than one half-resolution px: a jump of depth
+  const int step = std::max(step_px / 2, 1);
+  for (int v = step / 2 + kReach; v + kReach < disparity_.rows; v += step) {
+    const auto* here = disparity_.ptr<int16_t>(v);
+    const auto* above = disparity_.ptr<int16_t>(v - kReach);
+    const auto* below = disparity_.ptr<int16_t>(v + kReach);
+    for (int u = step / 2 + kReach; u + kReach < disparity_.cols; u += step) {
+      const int d = here[u];
+      const auto smooth = [d](int neighbour) { return neighbour >= 0 && std::abs(neighbour - d) <= kSmooth; };
+      if (d <= 0 || !smooth(here[u - kReach]) || !smooth(here[u + kReach]) || !smooth(above[u]) ||
+          !smooth(below[u])) {
+        continue;
+      }
+      const float u_px = 2.0F * static_cast<float>(u) + 0.5F, v_px = 2.0F * static_cast<float>(v) + 0.5F;
+      uvu_px.emplace_back(u_px, v_px, u_px - 2.0F * static_cast<float>(d) / kFixedPoint);
+    }
+  }
+}
+
 std::optional<float> DenseDisparity::around(float u_px, float v_px) const {
   constexpr int kReach = 3;
   constexpr size_t kLeast = 5;

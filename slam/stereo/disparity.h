@@ -1,8 +1,10 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/mat.hpp>
 #include <optional>
+#include <vector>
 
 #include "slam/types/config.h"
 
@@ -38,6 +40,10 @@ class DenseDisparity {
 
   /// Half-resolution map, CV_16SC1: disparity in half-resolution px times 16; negative where unknown.
   const cv::Mat& half_resolution() const { return disparity_; }
+
+  /// Known disparities on a grid, away from the jumps of depth: appends (u_left, v, u_right) [full-resolution
+  /// px].
+  void sample(int step_px, std::vector<Eigen::Vector3f>& uvu_px) const;
 
   /// Disparity [full-resolution px] near a full-resolution pixel: the median of the known values around it.
   std::optional<float> around(float u_px, float v_px) const;

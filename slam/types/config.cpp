@@ -56,7 +56,7 @@ InputError::InputError(std::vector<Problem> problems)
     : std::runtime_error(joined(problems)), problems_(std::move(problems)) {}
 
 ConfigReader::ConfigReader(const YAML::Node& node, std::string file, std::string path,
-                           std::vector<Problem>* problems, int line)
+                           std::vector<Problem>* problems, std::optional<int> line)
     : node_(node), file_(std::move(file)), path_(std::move(path)), problems_(problems), line_(line) {
   if (!node_.IsMap()) {
     problems_->push_back({file_, line_of(node_), path_, shown(node_), "a map of keys and values"});
@@ -69,7 +69,8 @@ std::string ConfigReader::path_of(const std::string& key) const {
 }
 
 int ConfigReader::line_of(const YAML::Node& node) const {
-  if (!node.IsDefined() || node.Mark().is_null()) return line_;
+  if (line_) return *line_;
+  if (!node.IsDefined() || node.Mark().is_null()) return 0;
   return node.Mark().line + 1;
 }
 

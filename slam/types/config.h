@@ -71,10 +71,10 @@ concept Checkable = requires(const T& value, ConfigReader& reader) {
 class ConfigReader {
  public:
   /// @param path   dotted key of this map inside the file, "" at the root
-  /// @param line   line to report for nodes without a mark of their own (values that came from a command
-  /// line)
+  /// @param line   line to report for everything, where the nodes' own marks mean nothing (a value given by
+  /// key)
   ConfigReader(const YAML::Node& node, std::string file, std::string path, std::vector<Problem>* problems,
-               int line = 0);
+               std::optional<int> line = std::nullopt);
 
   template <class T>
   void operator()(const char* key, T& value, const Field& field = {}) {
@@ -112,7 +112,7 @@ class ConfigReader {
   std::string file_;
   std::string path_;
   std::vector<Problem>* problems_;
-  int line_;
+  std::optional<int> line_;
   bool overlay_ = false;
   std::set<std::string> known_;
 };
