@@ -1,6 +1,6 @@
 #include "bench/runner/core_run.h"
 
-#include "bench/runner/prefetch_source.h"
+#include "bench/runner/ahead.h"
 
 namespace groundloop::bench {
 
@@ -8,7 +8,7 @@ CoreRun run_core(slam::StereoSource& source, slam::Pipeline& core, const std::st
                  std::optional<int64_t> frames, const FrameObserver& observe, const JobControl& control) {
   CoreRun run;
   const int64_t total = std::min(frames.value_or(INT64_MAX), source.size().value_or(INT64_MAX));
-  PrefetchSource ahead(source);
+  Ahead<slam::StereoFrame> ahead([&source] { return source.next(); });
   for (int64_t done = 0; done < total; ++done) {
     if (control.stop != nullptr && control.stop->load()) {
       run.interrupted = true;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -36,8 +37,8 @@
 namespace groundloop::bench {
 namespace {
 
-constexpr double kSight_m = 8.0;   // how far a cell may be to count as seen
-constexpr size_t kSightEvery = 5;  // frames between the poses whose sight is cast
+constexpr double kSight_m = 8.0;    // how far a cell may be to count as seen
+constexpr int64_t kSightEvery = 5;  // frames between the poses whose sight is cast
 
 using Clock = std::chrono::steady_clock;
 
@@ -60,16 +61,29 @@ struct ExactMap {
   std::vector<uint8_t> sight;
 };
 
-ExactMap exact_map(const sim::TruthWorld& world, const slam::StereoRig& rig, const slam::Trajectory& truth,
-                   double cell_m) {
-  ExactMap exact;
-  const slam::GridGeometry geometry = world.bounds(cell_m);
-  exact.map = world.occupancy(geometry, kBandMin_m, kBandMax_m);
-  std::vector<slam::Pose> poses;
-  for (size_t i = 0; i < truth.size(); i += kSightEvery) poses.push_back(truth[i].T);
-  exact.sight = world.visible_cells(geometry, rig, poses, kBandMin_m, kBandMax_m, kSight_m);
-  return exact;
-}
+/// Gathers what the true trajectory could see while the run goes on.
+class ExactMapper {
+ public:
+  ExactMapper(const sim::TruthWorld& world, const slam::StereoRig& rig, double cell_m)
+      : world_(world), rig_(rig) {
+    exact_.map = world.occupancy(world.bounds(cell_m), kBandMin_m, kBandMax_m);
+    exact_.sight.assign(exact_.map.geometry.cells(), 0);
+  }
+
+  void look(int64_t frame, const slam::Pose& T_world_left) {
+    if (frame % kSightEvery != 0) return;
+    const std::vector<uint8_t> seen =
+        world_.visible_cells(exact_.map.geometry, rig_, {T_world_left}, kBandMin_m, kBandMax_m, kSight_m);
+    for (size_t i = 0; i < seen.size(); ++i) exact_.sight[i] = std::max(exact_.sight[i], seen[i]);
+  }
+
+  const ExactMap& exact() const { return exact_; }
+
+ private:
+  const sim::TruthWorld& world_;
+  slam::StereoRig rig_;
+  ExactMap exact_;
+};
 
 /// The ceiling of the mapper: the same points at true poses, so that its errors and the localizer's separate.
 slam::OccupancyMap map_at_true_poses(const slam::Pipeline& core, const slam::StereoRig& rig,
@@ -128,6 +142,7 @@ RunOutcome run_scenario(const sim::Scenario& scenario, std::optional<int64_t> fr
   slam::Pipeline core(rig, options);
   const sim::TruthWorld truth_world = exact_scene(world);
   StageJudge stages(truth_world, rig);
+  ExactMapper exact_mapper(truth_world, rig, options.mapping.cell_m);
   FigureRecorder figures(rig, *source.size());
   std::vector<FrameNotes> notes;
   std::vector<double> render_ms;
@@ -138,6 +153,7 @@ RunOutcome run_scenario(const sim::Scenario& scenario, std::optional<int64_t> fr
     notes.push_back({truth.render_ms, errors.disparity_px.rmse().value_or(kUnknown),
                      errors.track_px.rmse().value_or(kUnknown), kUnknown});
     render_ms.push_back(truth.render_ms);
+    exact_mapper.look(frame.index, truth.T_world_left);
     figures.observe(frame, result, core);
   };
   const std::string name = fmt::format("{}-{}", scenario.name, scenario.seed);
@@ -158,7 +174,7 @@ RunOutcome run_scenario(const sim::Scenario& scenario, std::optional<int64_t> fr
   for (size_t i = 0; i < pairs.size(); ++i) {
     notes[i].position_error_m = (pairs.truth[i].T.translation() - pairs.estimate[i].T.translation()).norm();
   }
-  const ExactMap exact = exact_map(truth_world, rig, truth, options.mapping.cell_m);
+  const ExactMap& exact = exact_mapper.exact();
   metrics.merge(map_metrics(score_map(exact.map, exact.sight, core.map(), T_world_map)));
   const MapScore ceiling =
       score_map(exact.map, exact.sight, map_at_true_poses(core, rig, truth), slam::Pose::Identity());

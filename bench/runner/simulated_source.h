@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "bench/runner/ahead.h"
 #include "sim/head/head.h"
 #include "sim/render/renderer.h"
 #include "sim/scenario/scenario.h"
@@ -22,8 +23,8 @@ struct FrameTruth {
   double render_ms = 0;  ///< both images, read back
 };
 
-/// The simulator as a source of stereo pairs: physics, rendering and sensor noise. The truth of each pair
-/// goes past the core, into truth().
+/// The simulator as a source of stereo pairs. Physics and rendering run ahead, each in a thread of its own;
+/// sensor noise is added in next(). The truth of each pair goes past the core, into truth().
 class SimulatedSource : public slam::StereoSource {
  public:
   /// @param frames  deliver only the first so many pairs
@@ -33,7 +34,7 @@ class SimulatedSource : public slam::StereoSource {
 
   const slam::StereoRig& rig() const override { return rig_; }
   std::optional<int64_t> size() const override { return size_; }
-  /// All calls must come from one thread, the first of which makes the renderer.
+  /// All calls must come from one thread.
   std::optional<slam::StereoFrame> next() override;
 
   /// Truth of pair `index`. May be read from another thread once that pair was delivered to it.
@@ -43,16 +44,20 @@ class SimulatedSource : public slam::StereoSource {
   const sim::Simulation& simulation() const { return simulation_; }
 
  private:
+  std::optional<sim::Exposure> expose();
+  std::optional<slam::StereoFrame> render(sim::Renderer& renderer);
+
   const sim::Scenario& scenario_;
   const sim::World& world_;
   const sim::HeadModel& head_;
   const slam::StereoRig rig_;
   sim::Simulation simulation_;
   const int64_t size_;
-  std::unique_ptr<sim::Renderer> renderer_;
   sim::RendererInfo renderer_info_;
   std::vector<FrameTruth> truth_;
-  int64_t delivered_ = 0;
+  int64_t exposed_ = 0;
+  std::optional<Ahead<sim::Exposure>> exposures_;     ///< started by the first next()
+  std::optional<Ahead<slam::StereoFrame>> rendered_;  ///< takes from exposures_, so it ends first
 };
 
 }  // namespace groundloop::bench

@@ -25,7 +25,7 @@ TEST(RunFolder, IsCompleteAndAgreesWithItself) {
   EXPECT_THAT(answer.out, HasSubstr("\n  " + folder + "/report.html\n"));
   EXPECT_EQ(answer.complaint(), "");
 
-  // every file of design.md section 4, and no leavings
+  // every file of docs/architecture.md, and no leavings
   EXPECT_THAT(
       workspace.entries("run"),
       IsSupersetOf({"run.json", "scenario.yaml", "truth.tum", "estimate.tum", "keyframes.csv", "odometry.tum",
