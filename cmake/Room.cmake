@@ -13,5 +13,6 @@ function(groundloop_test name)
   target_link_libraries(test_${name} PRIVATE groundloop_base ${TEST_USES} GTest::gtest GTest::gmock GTest::gtest_main
     test_temporary_folder)
   gtest_discover_tests(test_${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600
+    ENVIRONMENT TSAN_OPTIONS=detect_deadlocks=0
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} TEST_PREFIX "${name}.")
 endfunction()
