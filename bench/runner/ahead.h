@@ -54,7 +54,8 @@ class Ahead {
         thing = make();
       } catch (...) {
         error = std::current_exception();
-        thing.reset();  // g++ 12 builds the result in place and forgets at -O2 that it was empty before the throw
+        thing.reset();  // g++ 12 builds the result in place and forgets at -O2 that it was empty before the
+                        // throw
       }
       std::unique_lock lock(mutex_);
       if (thing) {
