@@ -10,10 +10,7 @@ CoreRun run_core(slam::StereoSource& source, slam::Pipeline& core, const std::st
   const int64_t total = std::min(frames.value_or(INT64_MAX), source.size().value_or(INT64_MAX));
   Ahead<slam::StereoFrame> ahead([&source] { return source.next(); });
   for (int64_t done = 0; done < total; ++done) {
-    if (control.stop != nullptr && control.stop->load()) {
-      run.interrupted = true;
-      return run;
-    }
+    if (control.stop != nullptr && control.stop->load()) throw Interrupted();
     const std::optional<slam::StereoFrame> frame = ahead.next();
     if (!frame) break;
     slam::FrameResult result = core.process(*frame);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -13,14 +14,14 @@ namespace groundloop::bench {
 /// What a run of the core over a source left behind, beside the core's own map and trajectory.
 struct CoreRun {
   std::vector<slam::FrameResult> frames;  ///< without their features
-  bool interrupted = false;
 };
 
 /// Called with every pair and what the core said of it.
 using FrameObserver = std::function<void(const slam::StereoFrame&, const slam::FrameResult&)>;
 
-/// Feeds a source to the core until it ends, `frames` pairs are done or the job is stopped. The source runs
+/// Feeds a source to the core until it ends or `frames` pairs are done. The source runs
 /// ahead in a thread of its own; core and observers run here.
+/// @throws Interrupted when the job is stopped
 CoreRun run_core(slam::StereoSource& source, slam::Pipeline& core, const std::string& name,
                  std::optional<int64_t> frames, const FrameObserver& observe, const JobControl& control);
 

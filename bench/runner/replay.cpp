@@ -97,7 +97,6 @@ RunOutcome replay(const ReplayOptions& options, const JobControl& control) {
     figures.observe(frame, result, core);
   };
   const CoreRun core_run = run_core(*source, core, name, options.frames, observe, control);
-  if (core_run.interrupted) throw Interrupted();
 
   RunOutcome outcome{name, 0, folder, 0, {}, {}};
   Metrics& metrics = outcome.metrics;
