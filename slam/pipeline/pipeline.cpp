@@ -83,6 +83,7 @@ struct Pipeline::Impl {
   double kf_median_depth_m = 0;  ///< of those features
   std::vector<KeyFrameRecord> key_frames;
   std::vector<CloudPoint> cloud;  ///< p_map is kept in the left camera of its key frame
+  std::vector<LoopLink> links;
   Trajectory trajectory;
 };
 
@@ -103,6 +104,8 @@ OccupancyMap Pipeline::map() const { return impl_->mapper.grid().map(); }
 std::vector<OccupancyMap> Pipeline::layers() const { return impl_->mapper.grid().layers(); }
 const cv::Mat& Pipeline::last_disparity() const { return impl_->dense.half_resolution(); }
 const SlamOptions& Pipeline::options() const { return impl_->options; }
+
+const std::vector<LoopLink>& Pipeline::links() const { return impl_->links; }
 
 std::vector<CloudPoint> Pipeline::cloud() const {
   std::vector<CloudPoint> cloud = impl_->cloud;

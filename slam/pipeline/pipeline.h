@@ -52,6 +52,8 @@ class Pipeline {
   const Trajectory& trajectory() const;
   const std::vector<KeyFrameRecord>& key_frames() const;
   std::vector<CloudPoint> cloud() const;
+  /// Every link accepted so far, in the order in which they entered.
+  const std::vector<LoopLink>& links() const;
   /// Global map of the whole height band.
   OccupancyMap map() const;
   /// Global maps by height layer, lowest first; boundaries are options().mapping.layer_heights_m.

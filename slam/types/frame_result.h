@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "slam/types/loop_link.h"
 #include "slam/types/pose.h"
 
 namespace groundloop::slam {
@@ -62,6 +63,7 @@ struct FrameResult {
   double residual_px = 0;  ///< rms reprojection error of the inliers
 
   std::vector<FeatureObservation> features;
+  std::vector<LoopLink> links;  ///< places recognised; they enter the estimate at this frame
   std::array<double, kStageCount> stage_ms{};  ///< wall time, not part of the determinism promise
   double total_ms = 0;
   uint64_t state_hash = 0;  ///< over pose and features: the first frame that differs names the divergence
