@@ -76,16 +76,15 @@ Pose2 PlannedPath::at_fraction(size_t segment, double fraction) const {
 }
 
 PlannedState PlannedPath::at(double time_s) const {
-  if (pieces_.empty()) return {T_world_end_, {}, 0};
+  if (pieces_.empty()) return {T_world_end_, {}, 0, 0};
   const auto after = std::upper_bound(pieces_.begin() + 1, pieces_.end(), time_s,
                                       [](double t_s, const Piece& piece) { return t_s < piece.start_s; });
   const auto segment = static_cast<size_t>(after - pieces_.begin()) - 1;
   const Piece& piece = pieces_[segment];
   const double within_s = time_s - piece.start_s;
   const double rate = piece.ramp.rate(within_s);
-  return {at_fraction(segment, piece.ramp.progress(within_s)),
-          {rate * piece.length_m, rate * piece.turn_rad},
-          segment};
+  const double fraction = piece.ramp.progress(within_s);
+  return {at_fraction(segment, fraction), {rate * piece.length_m, rate * piece.turn_rad}, segment, fraction};
 }
 
 }  // namespace groundloop::sim

@@ -37,6 +37,7 @@ struct PlannedState {
   Pose2 T_world_body;
   BodyTwist twist;
   size_t segment = 0;
+  double fraction = 0;  ///< of the segment driven, 0 to 1
 };
 
 /// The plan as a pose for every time, in closed form. Every segment starts and ends at rest, with a

@@ -24,6 +24,11 @@ Pose2 composed(const Pose2& T_a_b, const Pose2& T_b_c) {
           T_a_b.yaw_rad + T_b_c.yaw_rad};
 }
 
+Pose2 inverse(const Pose2& T_a_b) {
+  const double c = std::cos(T_a_b.yaw_rad), s = std::sin(T_a_b.yaw_rad);
+  return {-c * T_a_b.x_m - s * T_a_b.y_m, s * T_a_b.x_m - c * T_a_b.y_m, -T_a_b.yaw_rad};
+}
+
 slam::Pose to_pose(const Pose2& T_a_b) {
   slam::Pose T = slam::Pose::Identity();
   T.linear() = Eigen::AngleAxisd(T_a_b.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();

@@ -17,6 +17,8 @@ Pose2 driven(const Pose2& from, double length_m, double turn_rad);
 
 /// T_a_c of T_a_b and T_b_c.
 Pose2 composed(const Pose2& T_a_b, const Pose2& T_b_c);
+/// T_b_a of T_a_b.
+Pose2 inverse(const Pose2& T_a_b);
 
 slam::Pose to_pose(const Pose2& T_a_b);
 

@@ -16,12 +16,6 @@ int line_of(const YAML::Node& node) {
   return node.IsDefined() && !node.Mark().is_null() ? node.Mark().line + 1 : 0;
 }
 
-std::string flow_text(const YAML::Node& node) {
-  YAML::Emitter out;
-  out << YAML::Flow << node;
-  return out.c_str();
-}
-
 /// A key given twice: yaml-cpp would silently take the first.
 void report_repeated_keys(const YAML::Node& node, const std::string& path, const std::string& file,
                           std::vector<Problem>& problems) {
@@ -42,17 +36,6 @@ void report_repeated_keys(const YAML::Node& node, const std::string& path, const
   }
 }
 
-/// Faults come with a later version; each one is refused by name, and the list then reads as empty.
-void refuse_faults(YAML::Node& root, const std::string& file, std::vector<Problem>& problems) {
-  if (!root.IsMap() || !root["faults"].IsDefined() || !root["faults"].IsSequence()) return;
-  for (size_t i = 0; i < root["faults"].size(); ++i) {
-    const YAML::Node fault = root["faults"][i];
-    problems.push_back({file, line_of(fault), fmt::format("faults[{}]", i), flow_text(fault),
-                        "an empty list: faults are not supported yet"});
-  }
-  root["faults"] = YAML::Node(YAML::NodeType::Sequence);
-}
-
 /// Lines that messages need after loading.
 void remember_lines(const YAML::Node& root, Scenario& scenario) {
   if (const YAML::Node start = root["robot"]["start"]; start.IsDefined()) {
@@ -62,6 +45,7 @@ void remember_lines(const YAML::Node& root, Scenario& scenario) {
   for (size_t i = 0; i < scenario.plan.segments.size(); ++i) {
     scenario.plan.segments[i].line = line_of(segments[i]);
   }
+  for (size_t i = 0; i < scenario.faults.size(); ++i) scenario.faults[i].line = line_of(root["faults"][i]);
   const YAML::Node slam = root["slam"];
   if (!slam.IsDefined()) return;
   scenario.slam.preset_line = slam["preset"].IsDefined() ? line_of(slam["preset"]) : 0;
@@ -114,7 +98,6 @@ void apply_override(const Override& override_, Scenario& scenario, std::vector<P
     YAML::Node value = value_node(override_.value);
     YAML::Node root =
         starts_with(key, "expect.") ? expectation_node(key.substr(7), value) : nested_node(key, value);
-    refuse_faults(root, kCommandLine, problems);
     ConfigReader reader(root, kCommandLine, "", &problems);
     reader.set_overlay(true);
     scenario.visit(reader);
@@ -208,7 +191,6 @@ Scenario load_scenario(const std::string& file, const std::vector<Override>& ove
   scenario.file = file;
 
   report_repeated_keys(root, "", file, problems);
-  refuse_faults(root, file, problems);
   read_config(root, file, scenario, problems);
   if (!root.IsMap()) throw InputError(problems.front());  // the rest would say that every key is missing
   if (problems.empty()) remember_lines(root, scenario);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/scenario/fault.h"
 #include "sim/scenario/metric_names.h"
 #include "slam/types/config.h"
 
@@ -129,12 +130,6 @@ struct Plan {
   void check(ConfigReader& reader) const;
 };
 
-/// An entry of `faults:`. None is supported yet, so the list must be empty.
-struct Fault {
-  template <class Archive>
-  void visit(Archive&) {}
-};
-
 /// How images are made. Every combination gives the same bytes in every run.
 struct RenderChoice {
   int antialiasing = 4;     ///< multisamples: 0 (none), 2 or 4
@@ -221,7 +216,7 @@ struct Scenario {
     a("robot", robot, {.required = true});
     a("head", head, {.required = true});
     a("plan", plan, {.required = true});
-    a("faults", faults, {.doc = "must be empty: faults are not supported yet"});
+    a("faults", faults, {.doc = "what goes wrong, and when"});
     a("render", render, {.doc = "how images are made"});
     a("slam", slam);
     a("seed", seed, {.doc = "of every noise"});

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+
+#include "sim/simulation/kidnapping.h"
 
 namespace groundloop::sim {
 namespace {
@@ -17,18 +21,67 @@ Problem touches(const Scenario& scenario, const std::string& key, int line, cons
           fmt::format("a place {} m clear of everything", kPathClearance_m)};
 }
 
-std::optional<Problem> first_touch(const Scenario& scenario, const PlannedPath& path, const TruthWorld& truth,
-                                   size_t segment) {
+/// The plan's world after each kidnapping, for every point of the path.
+class PlanCarrier {
+ public:
+  PlanCarrier(const Scenario& scenario, const PlannedPath& path) {
+    std::vector<const Fault*> kidnaps;
+    for (const Fault& fault : scenario.faults) {
+      if (fault.kidnap) kidnaps.push_back(&fault);
+    }
+    std::stable_sort(kidnaps.begin(), kidnaps.end(),
+                     [](const Fault* a, const Fault* b) { return a->at_s < b->at_s; });
+    for (const Fault* fault : kidnaps) {
+      const PlannedState from = path.at(fault->at_s);
+      legs_.push_back(
+          {{from.segment, from.fraction}, composed(pose_of(*fault->kidnap), inverse(from.T_world_body))});
+    }
+  }
+
+  Pose2 carried(size_t segment, double fraction, const Pose2& T_world_planned) const {
+    Pose2 T_world_plan;
+    for (const Leg& leg : legs_) {
+      if (leg.from <= std::pair(segment, fraction)) T_world_plan = leg.T_world_plan;
+    }
+    return composed(T_world_plan, T_world_planned);
+  }
+
+ private:
+  struct Leg {
+    std::pair<size_t, double> from;  ///< segment, and fraction of it driven
+    Pose2 T_world_plan;
+  };
+  std::vector<Leg> legs_;
+};
+
+std::optional<Problem> first_touch(const Scenario& scenario, const PlannedPath& path,
+                                   const PlanCarrier& carrier, const TruthWorld& truth, size_t segment) {
   const double steps = std::ceil(std::max({std::abs(path.segment_length_m(segment)) / kStep_m,
                                            std::abs(path.segment_turn_rad(segment)) / kStep_rad, 1.0}));
   for (double step = 1; step <= steps; ++step) {
-    const Pose2 at = path.at_fraction(segment, step / steps);
+    const double fraction = step / steps;
+    const Pose2 at = carrier.carried(segment, fraction, path.at_fraction(segment, fraction));
     if (const auto geom = truth.collision(at.x_m, at.y_m, at.yaw_rad, kPathClearance_m)) {
       return touches(scenario, fmt::format("plan.segments[{}]", segment),
                      scenario.plan.segments[segment].line, at, *geom);
     }
   }
   return std::nullopt;
+}
+
+std::optional<Problem> trouble_with(const Scenario& scenario, size_t index, const PlannedPath& path,
+                                    const TruthWorld& truth) {
+  const Fault& fault = scenario.faults[index];
+  const std::string key = fmt::format("faults[{}]", index);
+  if (fault.at_s > path.duration_s()) {
+    return Problem{scenario.file, fault.line, key + ".at_s", fmt::format("{}", fault.at_s),
+                   fmt::format("a time within the plan, which takes {:.2f} s", path.duration_s())};
+  }
+  if (!fault.kidnap) return std::nullopt;
+  const Pose2 there = pose_of(*fault.kidnap);
+  const auto geom = truth.collision(there.x_m, there.y_m, there.yaw_rad, kPathClearance_m);
+  if (!geom) return std::nullopt;
+  return touches(scenario, key + ".kidnap", fault.line, there, *geom);
 }
 
 }  // namespace
@@ -40,8 +93,13 @@ void check_path(const Scenario& scenario, const PlannedPath& path, const TruthWo
     throw InputError(touches(scenario, "robot.start", scenario.robot.start.line, start, *geom));
   }
   std::vector<Problem> problems;
+  const PlanCarrier carrier(scenario, path);
   for (size_t segment = 0; segment < path.segments(); ++segment) {
-    if (auto problem = first_touch(scenario, path, truth, segment)) problems.push_back(std::move(*problem));
+    if (auto problem = first_touch(scenario, path, carrier, truth, segment))
+      problems.push_back(std::move(*problem));
+  }
+  for (size_t fault = 0; fault < scenario.faults.size(); ++fault) {
+    if (auto problem = trouble_with(scenario, fault, path, truth)) problems.push_back(std::move(*problem));
   }
   if (!problems.empty()) throw InputError(std::move(problems));
 }

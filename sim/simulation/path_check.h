@@ -9,10 +9,11 @@ namespace groundloop::sim {
 inline constexpr double kPathClearance_m =
     0.03;  ///< kept from everything; covers the way between two samples
 
-/// Follows the planned path in steps of at most 5 cm and 3 degrees.
+/// Follows the planned path in steps of at most 5 cm and 3 degrees, from where kidnappings put the robot,
+/// too.
 /// @throws InputError with the first place in every segment where the robot would touch something: file and
-/// line of
-///         the segment, its number, the place and the name of the geom
+/// line of the segment, its number, the place and the name of the geom; likewise with every kidnapping to
+/// such a place, and every fault that begins after the plan's end
 void check_path(const Scenario& scenario, const PlannedPath& path, const TruthWorld& truth);
 
 }  // namespace groundloop::sim

@@ -2,13 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
+#include "sim/faults/head_faults.h"
 #include "sim/robot/controller.h"
 #include "sim/robot/drive.h"
 #include "sim/robot/odometry.h"
 #include "sim/robot/planned_path.h"
+#include "sim/robot/wheel_angles.h"
 #include "sim/simulation/collision_focus.h"
+#include "sim/simulation/kidnapping.h"
 #include "sim/simulation/path_check.h"
 #include "sim/simulation/state_pool.h"
 #include "sim/truth/truth_world.h"
@@ -51,10 +55,14 @@ struct Simulation::Impl {
   void settle();
   void step();
   Pose2 steering_pose() const;
+  std::array<double, 2> rolled_rad(const mjData& data) const;
+  std::shared_ptr<mjData> state_at(int64_t stamp_ns);
   Exposure expose();
+  void tell_expected_motion(Exposure& exposure);
 
   const World& world;
   const mjModel& model;
+  const std::vector<Fault> faults;
   Feedback feedback;
   Pose2 T_world_start;
   std::string scenario_file;
@@ -67,6 +75,8 @@ struct Simulation::Impl {
   World::DataPtr state;
   CollisionFocus focus;
   StatePool pool;
+  Kidnapping kidnapping;
+  WheelAngles angles;
   WheelController wheels;
   Odometry odometry;
   int64_t steps = 0;
@@ -77,6 +87,7 @@ struct Simulation::Impl {
 Simulation::Impl::Impl(const World& world_, const HeadModel& head, const Scenario& scenario)
     : world(world_),
       model(world.model()),
+      faults(scenario.faults),
       feedback(scenario.plan.feedback),
       scenario_file(scenario.file),
       start_line(scenario.robot.start.line),
@@ -91,14 +102,22 @@ Simulation::Impl::Impl(const World& world_, const HeadModel& head, const Scenari
       state(world.make_data()),
       focus(world),
       pool(model),
+      kidnapping(world_, faults),
+      angles({0, 0}),
       wheels(drive.limits, 0, 0),
       odometry(scenario.robot.odometry, drive.limits, scenario.seed, 0, 0) {
   T_world_start = path.at(0).T_world_body;
   check_path(scenario, path, TruthWorld(world, *state));
   settle();
-  const double left_rad = state->qpos[drive.left_qpos], right_rad = state->qpos[drive.right_qpos];
+  const auto [left_rad, right_rad] = rolled_rad(*state);
+  angles = WheelAngles({left_rad, right_rad});
   wheels = WheelController(drive.limits, left_rad, right_rad);
   odometry = Odometry(scenario.robot.odometry, drive.limits, scenario.seed, left_rad, right_rad);
+}
+
+/// How far the wheels have rolled.
+std::array<double, 2> Simulation::Impl::rolled_rad(const mjData& data) const {
+  return {data.qpos[drive.left_qpos], data.qpos[drive.right_qpos]};
 }
 
 /// Lets the robot sink into its contacts before time starts.
@@ -115,25 +134,37 @@ void Simulation::Impl::settle() {
   }
 }
 
-/// Where the steering believes the robot is.
+/// Where the steering believes the robot is, in the plan's world.
 Pose2 Simulation::Impl::steering_pose() const {
   if (feedback == Feedback::kOdometry) return composed(T_world_start, odometry.T_odom_body());
-  return to_pose2(body_pose(world, *state));
+  return composed(inverse(kidnapping.T_world_plan()), to_pose2(body_pose(world, *state)));
 }
 
 void Simulation::Impl::step() {
   const double step_s = model.opt.timestep;
-  const PlannedState planned = path.at(static_cast<double>(steps) * step_s);
-  const double left_rad = state->qpos[drive.left_qpos], right_rad = state->qpos[drive.right_qpos];
+  const double time_s = static_cast<double>(steps) * step_s;
+  kidnapping.update(steps * step_ns, *state);
+  const PlannedState planned = path.at(time_s);
   const BodyTwist wanted =
       feedback == Feedback::kPlan ? planned.twist : tracking_twist(planned, steering_pose());
-  const WheelSpeeds speeds = wheels.command(wanted, left_rad, right_rad, step_s);
-  state->ctrl[drive.left_actuator] = speeds.left_radps;
-  state->ctrl[drive.right_actuator] = speeds.right_radps;
+  const WheelSpeeds speeds = wheels.command(wanted, angles.motor_rad(0), angles.motor_rad(1), step_s);
+  const WheelFaults wheel = wheel_faults(faults, time_s);
+  state->ctrl[drive.left_actuator] = speeds.left_radps * wheel.grip[0];
+  state->ctrl[drive.right_actuator] = speeds.right_radps * wheel.grip[1];
   focus.update(*state);
   mj_step(&focus.model(), state.get());
-  odometry.update(state->qpos[drive.left_qpos], state->qpos[drive.right_qpos]);
+  angles.update(rolled_rad(*state), wheel);
+  odometry.update(angles.counted_rad(0), angles.counted_rad(1));
   ++steps;
+}
+
+/// A copy of the state, moved on with its velocities to a time less than a step (or a trigger offset) away.
+std::shared_ptr<mjData> Simulation::Impl::state_at(int64_t stamp_ns) {
+  const std::shared_ptr<mjData> copy = pool.copy(*state);
+  mj_integratePos(&model, copy->qpos, copy->qvel, static_cast<double>(stamp_ns - steps * step_ns) * 1e-9);
+  update_kinematics(model, *copy);
+  copy->time = static_cast<double>(stamp_ns) * 1e-9;
+  return copy;
 }
 
 Exposure Simulation::Impl::expose() {
@@ -141,33 +172,42 @@ Exposure Simulation::Impl::expose() {
   exposure.index = next_exposure++;
   exposure.stamp_ns = exposure.index * period_ns;
   while ((steps + 1) * step_ns <= exposure.stamp_ns) step();
+  kidnapping.update(exposure.stamp_ns, *state);
+  const double time_s = static_cast<double>(exposure.stamp_ns) * 1e-9;
 
-  // the rest of the way to the exposure, in a copy
-  const std::shared_ptr<mjData> at_exposure = pool.copy(*state);
-  const double remainder_s = static_cast<double>(exposure.stamp_ns - steps * step_ns) * 1e-9;
-  mj_integratePos(&model, at_exposure->qpos, at_exposure->qvel, remainder_s);
-  update_kinematics(model, *at_exposure);
-  at_exposure->time = static_cast<double>(exposure.stamp_ns) * 1e-9;
-  exposure.state = at_exposure;
+  exposure.state = exposure.state_right = state_at(exposure.stamp_ns);
+  if (const double offset_s = trigger_offset_s(faults, time_s); offset_s != 0) {
+    exposure.state_right = state_at(exposure.stamp_ns + std::llround(offset_s * 1e9));
+  }
 
   // truth
-  exposure.T_world_body = body_pose(world, *at_exposure);
+  exposure.T_world_body = body_pose(world, *exposure.state);
   exposure.T_world_left = exposure.T_world_body * T_body_left;
-  exposure.T_world_right = exposure.T_world_left * T_left_right;
+  exposure.T_world_right = body_pose(world, *exposure.state_right) * T_body_left * T_left_right *
+                           T_calibrated_right(faults, time_s);
 
-  // what the robot knows: a copy of the odometry reads the encoders at the exposure
+  tell_expected_motion(exposure);
+  return exposure;
+}
+
+/// What the robot knows: its odometry, its plan, and the motion that either makes it expect.
+void Simulation::Impl::tell_expected_motion(Exposure& exposure) {
+  // copies read the encoders at the exposure
+  const double time_s = static_cast<double>(exposure.stamp_ns) * 1e-9;
+  WheelAngles angles_now = angles;
+  angles_now.update(rolled_rad(*exposure.state), wheel_faults(faults, time_s));
   Odometry reading = odometry;
-  reading.update(at_exposure->qpos[drive.left_qpos], at_exposure->qpos[drive.right_qpos]);
+  reading.update(angles_now.counted_rad(0), angles_now.counted_rad(1));
   exposure.T_odom_body = to_pose(reading.T_odom_body());
-  exposure.T_plan_body = to_pose(path.at(at_exposure->time).T_world_body);
-  const slam::Pose T_world_expected = feedback == Feedback::kOdometry
-                                          ? to_pose(composed(T_world_start, reading.T_odom_body()))
-                                          : exposure.T_plan_body;
-  const slam::Pose T_world_left = T_world_expected * T_body_left;
+
+  const Pose2 planned = path.at(time_s).T_world_body;
+  exposure.T_plan_body = to_pose(composed(kidnapping.T_world_plan(), planned));
+  const Pose2 expected =
+      feedback == Feedback::kOdometry ? composed(T_world_start, reading.T_odom_body()) : planned;
+  const slam::Pose T_world_left = to_pose(expected) * T_body_left;
   exposure.T_previous_left =
       exposure.index == 0 ? slam::Pose::Identity() : T_world_expected_left.inverse() * T_world_left;
   T_world_expected_left = T_world_left;
-  return exposure;
 }
 
 Simulation::Simulation(const World& world, const HeadModel& head, const Scenario& scenario)

@@ -15,14 +15,17 @@ namespace groundloop::sim {
 struct Exposure {
   int64_t index = 0;
   int64_t stamp_ns = 0;
-  slam::Pose T_world_body;  ///< true pose of the robot's body frame
-  slam::Pose T_world_left;  ///< true pose of the left camera
-  slam::Pose T_world_right;
+  slam::Pose T_world_body;     ///< true pose of the robot's body frame
+  slam::Pose T_world_left;     ///< true pose of the left camera
+  slam::Pose T_world_right;    ///< as it is: later or earlier by a trigger offset, turned by a knock
   slam::Pose T_odom_body;      ///< wheel odometry (with its errors) since the start, planar
-  slam::Pose T_plan_body;      ///< where the plan says the robot is, world frame
+  slam::Pose T_plan_body;      ///< where the plan says the robot is, world frame (after a kidnapping: goes on
+                               ///< from where it was put)
   slam::Pose T_previous_left;  ///< motion since the last exposure as planned, or as odometry says when it
                                ///< steers (what the core may know); identity at the first
   std::shared_ptr<const mjData> state;  ///< MuJoCo state to render; may be kept, and freed in any thread
+  std::shared_ptr<const mjData> state_right;  ///< the same for the right camera; another one only when it
+                                              ///< exposes at another time
 };
 
 /// Physics, controller and odometry: drives the plan and stops at every exposure.
@@ -31,6 +34,9 @@ struct Exposure {
 /// the head's rate, so the drive is the same for every head; an exposure between two steps continues the last
 /// step's velocities for the remainder, in a copy of the state. That copy is both what is rendered and what
 /// is true.
+///
+/// Faults of the scenario that change what happens (slip, kidnapping, encoders, knocks, trigger) act here;
+/// those of images and their transport do not (sim/faults).
 ///
 /// The first exposure is at time 0, after the robot has settled on its wheels. The drive takes as long as the
 /// plan; exposures() = floor(duration / period) + 1.

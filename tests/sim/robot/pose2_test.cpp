@@ -26,6 +26,12 @@ TEST(Pose2, DrivingIsExact) {
   expect_pose(driven({0, 0, 0}, 1, 1e-9), 1, 0.5e-9, 1e-9);
 }
 
+TEST(Pose2, TheInverseLeadsBack) {
+  const Pose2 T_a_b = {3, -2, 0.7};
+  expect_pose(composed(T_a_b, inverse(T_a_b)), 0, 0, 0);
+  expect_pose(composed(inverse(T_a_b), T_a_b), 0, 0, 0);
+}
+
 TEST(Pose2, PiecesAddUp) {
   Pose2 pose;
   for (int i = 0; i < 1000; ++i) pose = driven(pose, 0.002, 0.003);

@@ -162,15 +162,62 @@ TEST_F(ScenarioFiles, WhatDoesNotExistYetIsRefusedClearly) {
   speed_mps: 0.2
   feedback: slam
   segments: [{look: {pan_deg: 30}}]
-faults: [{at_s: 12, for_s: 3, wheel_slip: {left: 0.3}}]
 )"),
       ElementsAre(
           "test.yaml:8: plan.feedback: slam: wanted one of: plan, odometry, truth (steering by SLAM is "
           "not supported yet)",
           "test.yaml:9: plan.segments[0].look: {pan_deg: 30}: wanted no look segment: none of the robots "
-          "has a pan-tilt head yet",
-          "test.yaml:10: faults[0]: {at_s: 12, for_s: 3, wheel_slip: {left: 0.3}}: wanted an empty list: "
-          "faults are not supported yet"));
+          "has a pan-tilt head yet"));
+}
+
+TEST_F(ScenarioFiles, FaultsAreATimeline) {
+  const Scenario s = load_scenario(write(kGood + R"(faults:
+  - {at_s: 12, for_s: 3, wheel_slip: {left: 0.3}}
+  - {at_s: 1, kidnap: {x_m: 1, y_m: 2, yaw_deg: 30}}
+  - {at_s: 2.5, blur: {sigma_px: 2, camera: right}}
+)"));
+  ASSERT_EQ(s.faults.size(), 3U);
+  EXPECT_EQ(s.faults[0].kind(), "wheel_slip");
+  EXPECT_EQ(s.faults[0].wheel_slip->left, 0.3);
+  EXPECT_EQ(s.faults[0].wheel_slip->right, 0);
+  EXPECT_EQ(s.faults[0].line, 23);
+  EXPECT_TRUE(s.faults[0].active(12));
+  EXPECT_TRUE(s.faults[0].active(14.999));
+  EXPECT_FALSE(s.faults[0].active(15)) << "over at its end";
+  EXPECT_EQ(s.faults[1].kind(), "kidnap");
+  EXPECT_EQ(s.faults[1].end_s(), 1) << "over at once";
+  EXPECT_EQ(s.faults[2].blur->camera, FaultCamera::kRight);
+  EXPECT_TRUE(s.faults[2].active(1e6)) << "without for_s until the end";
+  EXPECT_EQ(s.faults[2].line, 25);
+
+  const std::string text = to_yaml(s);
+  EXPECT_EQ(to_yaml(load_scenario(write(text, "resolved.yaml"))), text);
+  const Scenario replaced = load_scenario(write(kGood), {{"faults", "[{at_s: 1, drop: {}}]"}});
+  ASSERT_EQ(replaced.faults.size(), 1U);
+  EXPECT_EQ(replaced.faults[0].drop->probability, 1);
+}
+
+TEST_F(ScenarioFiles, WrongFaultsNameLineKeyAndWhatIsWanted) {
+  EXPECT_THAT(
+      messages(kGood + R"(faults:
+  - {at_s: 12, for_s: 3}
+  - {at_s: 1, for_s: 3, kidnap: {x_m: 1, y_m: 2, yaw_deg: 30}}
+  - {for_s: 0, drop: {}}
+  - {at_s: 1, swap: {}, late: {pairs: 0}}
+  - {at_s: 1, bluur: {sigma_px: 1}, blur: {sigma_px: 1, camera: middle}}
+)"),
+      ElementsAre(
+          "test.yaml:23: faults[0]: {at_s: 12, for_s: 3}: wanted at_s, for_s and exactly one of: drop, "
+          "duplicate, late, swap, trigger_offset, exposure, flash, blackout, dirt, blur, knock, "
+          "wheel_slip, kidnap, encoder",
+          "test.yaml:24: faults[1].for_s: 3: wanted no for_s: a kidnapping is over at once",
+          "test.yaml:25: faults[2].at_s: missing: wanted a number from 0 to 100000",
+          "test.yaml:25: faults[2].for_s: 0: wanted a number from 0.001 to 100000",
+          HasSubstr("test.yaml:26: faults[3].late.pairs: 0: wanted a whole number from 1 to 100"),
+          HasSubstr("test.yaml:26: faults[3]: {at_s: 1, swap: {}, late: {pairs: 0}}: wanted at_s, for_s "
+                    "and exactly one of: drop,"),
+          "test.yaml:27: faults[4].blur.camera: middle: wanted one of: both, left, right",
+          HasSubstr("test.yaml:27: faults[4].bluur: unknown key: wanted")));
 }
 
 TEST_F(ScenarioFiles, ExpectationsAreChecked) {

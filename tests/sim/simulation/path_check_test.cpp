@@ -60,6 +60,26 @@ TEST(PathCheck, TheTailIsLookedAtWhenTurning) {
       ElementsAre(MatchesRegex(".*plan.segments\\[0\\]: touches post at x 0.00 m, y 0.00 m: wanted.*")));
 }
 
+TEST(PathCheck, AfterAKidnappingThePathIsFollowedFromThere) {
+  const std::string plan = "  speed_mps: 0.2\n  segments:\n    - {straight_m: 1}\nfaults:\n";
+  EXPECT_THAT(messages(plan + "  - {at_s: 2, kidnap: {x_m: 1, y_m: 3, yaw_deg: 0}}\n"), IsEmpty());
+  EXPECT_THAT(messages(plan + "  - {at_s: 2, kidnap: {x_m: 1.5, y_m: 0, yaw_deg: 0}}\n"),
+              ElementsAre(MatchesRegex(
+                  ".*:9: plan.segments\\[0\\]: touches desk_leg at x 1.8[0-9] m, y 0.00 m: .*")));
+  EXPECT_THAT(
+      messages(plan + "  - {at_s: 2, kidnap: {x_m: 2.5, y_m: 0.2, yaw_deg: 0}}\n"),
+      ElementsAre(
+          MatchesRegex(".*:9: plan.segments\\[0\\]: touches desk_leg.*"),
+          EndsWith(".yaml:11: faults[0].kidnap: touches desk_leg at x 2.50 m, y 0.20 m: wanted a place "
+                   "0.03 m clear of everything")));
+}
+
+TEST(PathCheck, AFaultAfterThePlanIsAMistake) {
+  EXPECT_THAT(messages("  speed_mps: 0.2\n  segments: [{stop_s: 2}]\nfaults:\n  - {at_s: 3, blackout: {}}\n"),
+              ElementsAre(EndsWith(
+                  ".yaml:10: faults[0].at_s: 3: wanted a time within the plan, which takes 2.00 s")));
+}
+
 TEST(PathCheck, AStartInsideSomethingIsNamedAlone) {
   const std::string box = "<geom name='crate' type='box' pos='0.1 0 0.2' size='0.2 0.2 0.2'/>";
   EXPECT_THAT(
