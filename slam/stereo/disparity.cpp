@@ -64,16 +64,16 @@ void DenseDisparity::sample(int step_px, std::vector<Eigen::Vector3f>& uvu_px) c
   }
 }
 
-std::optional<float> DenseDisparity::around(float u_px, float v_px) const {
+std::optional<float> disparity_around(const cv::Mat& half_resolution, float u_px, float v_px) {
   constexpr int kReach = 3;
   constexpr size_t kLeast = 5;
   // Pixel (2i + 0.5) of the full image is pixel i of the half one.
   const int u = cvRound((u_px - 0.5F) / 2), v = cvRound((v_px - 0.5F) / 2);
   std::array<int16_t, (2 * kReach + 1) * (2 * kReach + 1)> known;
   size_t count = 0;
-  for (int row = std::max(v - kReach, 0); row <= std::min(v + kReach, disparity_.rows - 1); ++row) {
-    const auto* values = disparity_.ptr<int16_t>(row);
-    for (int col = std::max(u - kReach, 0); col <= std::min(u + kReach, disparity_.cols - 1); ++col) {
+  for (int row = std::max(v - kReach, 0); row <= std::min(v + kReach, half_resolution.rows - 1); ++row) {
+    const auto* values = half_resolution.ptr<int16_t>(row);
+    for (int col = std::max(u - kReach, 0); col <= std::min(u + kReach, half_resolution.cols - 1); ++col) {
       if (values[col] >= 0) known[count++] = values[col];
     }
   }

@@ -30,6 +30,10 @@ struct DisparityOptions {
   }
 };
 
+/// Disparity [full-resolution px] of a half-resolution map (DenseDisparity::half_resolution) near a
+/// full-resolution pixel: the median of the known values around it.
+std::optional<float> disparity_around(const cv::Mat& half_resolution, float u_px, float v_px);
+
 /// Dense disparity by block matching on half-resolution images: rough, and cheap. Section 2.2 of the paper.
 class DenseDisparity {
  public:
@@ -45,8 +49,10 @@ class DenseDisparity {
   /// px].
   void sample(int step_px, std::vector<Eigen::Vector3f>& uvu_px) const;
 
-  /// Disparity [full-resolution px] near a full-resolution pixel: the median of the known values around it.
-  std::optional<float> around(float u_px, float v_px) const;
+  /// disparity_around() of this map.
+  std::optional<float> around(float u_px, float v_px) const {
+    return disparity_around(disparity_, u_px, v_px);
+  }
 
  private:
   void forget_matches_outside();

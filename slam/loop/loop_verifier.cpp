@@ -1,0 +1,297 @@
+#include "slam/loop/loop_verifier.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <bitset>
+#include <cmath>
+#include <numbers>
+
+#include "slam/stereo/disparity.h"
+#include "slam/types/stereo_uncertainty.h"
+
+namespace groundloop::slam {
+namespace {
+
+constexpr double kMinDepth_m = 0.1;
+constexpr double kBorder_px = 10;  // a window nearer to the border is not expected to be found
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr int kMaxDistance = 80;  // bits, of a descriptor match
+constexpr double kRatio = 0.85;
+constexpr double kGoodPrediction_px = 8;  // what KLT from a predicted position copes with
+constexpr double kAgreement_px = 2;
+constexpr int kColumns = 8, kRows = 6;
+
+/// Rough points, rough measurements: corners of coarse pyramid levels with block-matching depth.
+RegistrationOptions coarse_options(RegistrationOptions options) {
+  options.cost = RegistrationCost::kReprojection;
+  options.sigma_px = 1;
+  options.inlier_gate_px = 6;
+  options.ransac_iterations = 500;
+  options.min_inliers = 10;
+  options.min_inlier_ratio = 0.1;
+  return options;
+}
+
+RegistrationOptions fine_options(RegistrationOptions options) {
+  options.cost = RegistrationCost::kReprojection;
+  options.inlier_gate_px = kAgreement_px;
+  options.ransac_iterations = 50;
+  options.min_inliers = 6;
+  options.min_inlier_ratio = 0;
+  return options;
+}
+
+/// Something nearer is seen where the landmark should be.
+bool hidden(const StereoRig& rig, const cv::Mat& half_disparity, const Eigen::Vector3d& uvu) {
+  const auto seen_px =
+      disparity_around(half_disparity, static_cast<float>(uvu.x()), static_cast<float>(uvu.y()));
+  const double expected_px = uvu.x() - uvu.z() - rig.disparity_at_infinity_px();
+  return seen_px && *seen_px - rig.disparity_at_infinity_px() > 1.15 * expected_px + 2;
+}
+
+/// At most `wanted` of n, evenly spread over the order in which they are kept.
+int stride_of(size_t n, int wanted) {
+  return std::max(1, static_cast<int>((n + static_cast<size_t>(wanted) - 1) / static_cast<size_t>(wanted)));
+}
+
+}  // namespace
+
+Eigen::Matrix2d predicted_shape(const StereoRig& rig, const Pose& T_to_from, const Eigen::Vector3d& p_from,
+                                double offset_m) {
+  // On the plane n.p = n.p_from with n along the ray, p = r(u, v) (n.p_from) / (n.r).
+  const Eigen::Vector3d r = p_from / p_from.z(), n = r.normalized();
+  const double depth = n.dot(p_from), n_r = n.dot(r);
+  Eigen::Matrix<double, 3, 2> dp;  // by the normalised image coordinates
+  for (int k = 0; k < 2; ++k) {
+    dp.col(k) = depth / n_r * (Eigen::Vector3d::Unit(k) - r * (n(k) / n_r));
+  }
+  dp.col(0) /= rig.fx_px;
+  dp.col(1) /= rig.fy_px;
+  Eigen::Vector3d p_to = T_to_from * p_from;
+  p_to.x() -= offset_m;
+  Eigen::Matrix<double, 2, 3> J;
+  J << rig.fx_px / p_to.z(), 0, -rig.fx_px * p_to.x() / (p_to.z() * p_to.z()),  //
+      0, rig.fy_px / p_to.z(), -rig.fy_px * p_to.y() / (p_to.z() * p_to.z());
+  return J * T_to_from.linear() * dp;
+}
+
+LoopVerifier::LoopVerifier(const StereoRig& rig, const LoopOptions& options, const KltOptions& klt,
+                           const StereoOptions& stereo, const RegistrationOptions& registration)
+    : rig_(rig),
+      options_(options),
+      klt_(klt),
+      matcher_(rig, stereo, klt),
+      sigma_px_(registration.sigma_px),
+      coarse_(rig, coarse_options(registration)),
+      fine_(rig, fine_options(registration)) {}
+
+Verification LoopVerifier::verify(const StoredView& stored, const CurrentView& current,
+                                  const std::optional<PosePrediction>& prediction, uint64_t seed) {
+  stored_pyramid_.build(stored.grey, klt_.levels);
+  Verification found;
+  if (prediction && precise_enough(stored, *prediction)) {
+    found = refine(stored, current, prediction->T_from_to, seed);
+  }
+  if (!found.accepted) {
+    std::string message;
+    if (const auto T_from_to = coarse_pose(stored, current, seed, message)) {
+      found = refine(stored, current, *T_from_to, seed);
+    } else if (found.message == Verification().message) {
+      found.message = message;
+    }
+  }
+  if (found.accepted && prediction) {
+    const double sigma =
+        contradiction_sigma(*prediction, {found.link.T_from_to, found.link.covariance}, options_);
+    if (!(sigma <= options_.gate_sigma)) {
+      found.accepted = false;
+      found.message =
+          fmt::format("{:.1f} sigma from the predicted pose, {:.1f} allowed", sigma, options_.gate_sigma);
+    }
+  }
+  return found;
+}
+
+bool LoopVerifier::precise_enough(const StoredView& stored, const PosePrediction& prediction) const {
+  std::vector<float> depths_m;
+  for (const Landmark& landmark : stored.landmarks) depths_m.push_back(landmark.depth_m);
+  if (depths_m.empty()) return false;
+  const auto middle = depths_m.begin() + static_cast<std::ptrdiff_t>(depths_m.size() / 2);
+  std::nth_element(depths_m.begin(), middle, depths_m.end());
+  const double sigma_m = std::sqrt(prediction.covariance.topLeftCorner<3, 3>().trace());
+  const double sigma_rad = std::sqrt(prediction.covariance.bottomRightCorner<3, 3>().trace());
+  return rig_.fx_px * (sigma_m / *middle + sigma_rad) < kGoodPrediction_px;
+}
+
+std::optional<Pose> LoopVerifier::coarse_pose(const StoredView& stored, const CurrentView& current,
+                                              uint64_t seed, std::string& message) {
+  match_descriptors(stored.keypoints, current.view.keypoints, kMaxDistance, kRatio, matches_);
+  coarse_pairs_.clear();
+  for (const DescriptorMatch& match : matches_) {
+    const Eigen::Vector3d uvu = stored.keypoints[static_cast<size_t>(match.a)].uvu_px.cast<double>();
+    const auto p_from = rig_.triangulate(uvu);
+    if (!p_from) continue;
+    coarse_pairs_.push_back({*p_from, point_covariance(rig_, uvu, 1),
+                             current.view.keypoints[static_cast<size_t>(match.b)].uvu_px.cast<double>()});
+  }
+  coarse_.align(coarse_pairs_, Pose::Identity(), seed, registered_);
+  if (registered_.usable) return registered_.T_from_to;
+  message = "descriptors: " + registered_.message;
+  return std::nullopt;
+}
+
+Verification LoopVerifier::refine(const StoredView& stored, const CurrentView& current, const Pose& T_coarse,
+                                  uint64_t seed) {
+  Verification found;
+  Pose T_from_to = T_coarse;
+  // From the coarse pose, then from that of the first search, which finds more and knows what is hidden.
+  for (int pass = 0; pass < 2; ++pass) {
+    find_landmarks(stored, current, T_from_to, search_);
+    fine_.align(search_.pairs, T_from_to, seed, registered_);
+    found.expected = search_.expected;
+    found.link.inliers = registered_.inliers;
+    found.inlier_ratio = static_cast<double>(registered_.inliers) / std::max(search_.expected, 1);
+    if (!registered_.usable) {
+      found.message = registered_.message;
+      return found;
+    }
+    const bool done = found.inlier_ratio > 0.7;
+    T_from_to = registered_.T_from_to;
+    if (done) break;
+  }
+  found.link = {LinkKind::kLandmarks,   stored.index,        current.view.index,     registered_.T_from_to,
+                registered_.covariance, registered_.inliers, registered_.residual_px};
+  found.reverse_ratio = reverse_ratio(current, T_from_to);
+  found.message = refusal(found);
+  found.accepted = found.message.empty();
+  return found;
+}
+
+void LoopVerifier::find_landmarks(const StoredView& stored, const CurrentView& current, const Pose& T_from_to,
+                                  Search& search) {
+  search.pairs.clear();
+  search.expected = 0;
+  const Pose T_to_from = T_from_to.inverse();
+  const int stride = stride_of(stored.landmarks.size(), options_.landmarks);
+  for (size_t i = 0; i < stored.landmarks.size(); i += static_cast<size_t>(stride)) {
+    const Landmark& landmark = stored.landmarks[i];
+    const Eigen::Vector3d p_from = point_of(rig_, landmark), ray = p_from / p_from.z();
+    const Eigen::Vector3d p_to = T_to_from * p_from;
+    if (p_to.z() < kMinDepth_m) continue;
+    const Eigen::Vector3d uvu = rig_.project(p_to);
+    const auto inside = [this](double u, double v) {
+      return u > kBorder_px && v > kBorder_px && u < rig_.width_px - kBorder_px &&
+             v < rig_.height_px - kBorder_px;
+    };
+    if (!inside(uvu.x(), uvu.y()) || !inside(uvu.z(), uvu.y())) continue;
+    if (hidden(rig_, current.half_disparity, uvu)) continue;
+    const Eigen::Matrix2f A = predicted_shape(rig_, T_to_from, p_from, 0).cast<float>();
+    const Eigen::Matrix2f A_right = predicted_shape(rig_, T_to_from, p_from, rig_.baseline_m).cast<float>();
+    const auto limit = static_cast<float>(klt_.max_scale * klt_.max_scale);
+    if (!(A.determinant() < limit && A.determinant() > 1 / limit)) continue;
+    if (!patch_.take(stored_pyramid_, landmark.uv_px, klt_.levels)) continue;
+    ++search.expected;
+    AffineState left, right;
+    if (!find(current.left, uvu.head<2>().cast<float>(), A, left)) continue;
+    const Eigen::Vector2d at_right(uvu.z(), uvu.y());
+    if (!find(current.right, at_right.cast<float>(), A_right, right)) continue;
+    if (!matcher_.plausible(left.uv_px, right.uv_px)) continue;
+    const double variance = static_cast<double>(landmark.sigma_m) * landmark.sigma_m;
+    search.pairs.push_back(
+        {p_from, variance * ray * ray.transpose(), optimal_measurement(left.uv_px, right.uv_px)});
+  }
+}
+
+/// Share of the current landmarks that should be seen in the stored image and are found there where the pose
+/// puts them. A picture or piece of furniture that another place has too fails here: its surroundings differ.
+double LoopVerifier::reverse_ratio(const CurrentView& current, const Pose& T_from_to) {
+  int expected = 0, found = 0;
+  const std::vector<Landmark>& landmarks = current.view.landmarks;
+  const int stride = stride_of(landmarks.size(), options_.landmarks / 2);
+  for (size_t i = 0; i < landmarks.size(); i += static_cast<size_t>(stride)) {
+    const Eigen::Vector3d p_to = point_of(rig_, landmarks[i]);
+    const Eigen::Vector3d p_from = T_from_to * p_to;
+    if (p_from.z() < kMinDepth_m) continue;
+    const Eigen::Vector3d uvu = rig_.project(p_from);
+    if (uvu.x() < kBorder_px || uvu.y() < kBorder_px || uvu.x() > rig_.width_px - kBorder_px ||
+        uvu.y() > rig_.height_px - kBorder_px) {
+      continue;
+    }
+    const Eigen::Matrix2f A = predicted_shape(rig_, T_from_to, p_to, 0).cast<float>();
+    const auto limit = static_cast<float>(klt_.max_scale * klt_.max_scale);
+    if (!(A.determinant() < limit && A.determinant() > 1 / limit)) continue;
+    if (!patch_.take(current.left, landmarks[i].uv_px, klt_.levels)) continue;
+    ++expected;
+    AffineState state;
+    if (!find(stored_pyramid_, uvu.head<2>().cast<float>(), A, state)) continue;
+    if ((state.uv_px.cast<double>() - uvu.head<2>()).norm() < kAgreement_px) ++found;
+  }
+  return expected > 0 ? static_cast<double>(found) / expected : 0;
+}
+
+bool LoopVerifier::find(const ImagePyramid& image, const Eigen::Vector2f& uv_px, const Eigen::Matrix2f& A,
+                        AffineState& state) const {
+  for (const int start_level : {1, patch_.levels - 1}) {
+    state.uv_px = uv_px;
+    state.A = A;
+    if (track_affine(patch_, image, klt_, start_level, state) == KltStatus::kTracked) return true;
+    if (patch_.levels <= 2) break;
+  }
+  return false;
+}
+
+int LoopVerifier::occupied_cells(const Search& search) const {
+  std::bitset<kColumns * kRows> cells;
+  for (size_t i = 0; i < search.pairs.size(); ++i) {
+    if (registered_.inlier[i] == 0) continue;
+    const Eigen::Vector3d& uvu = search.pairs[i].uvu_to;
+    const int column = static_cast<int>(uvu.x() * kColumns / rig_.width_px);
+    const int row = static_cast<int>(uvu.y() * kRows / rig_.height_px);
+    cells.set(
+        static_cast<size_t>(std::clamp(row, 0, kRows - 1) * kColumns + std::clamp(column, 0, kColumns - 1)));
+  }
+  return static_cast<int>(cells.count());
+}
+
+/// What speaks against the link, empty when nothing does.
+std::string LoopVerifier::refusal(const Verification& found) const {
+  if (found.link.inliers < options_.min_inliers) {
+    return fmt::format("{} landmarks agree, {} needed", found.link.inliers, options_.min_inliers);
+  }
+  if (found.inlier_ratio < options_.min_inlier_ratio) {
+    return fmt::format("{} of {} stored landmarks found, {:.0f} % needed", found.link.inliers, found.expected,
+                       100 * options_.min_inlier_ratio);
+  }
+  if (found.reverse_ratio < options_.min_inlier_ratio) {
+    return fmt::format("{:.0f} % of the current landmarks found in the stored view, {:.0f} % needed",
+                       100 * found.reverse_ratio, 100 * options_.min_inlier_ratio);
+  }
+  const int cells = occupied_cells(search_);
+  if (cells < options_.min_cells) {
+    return fmt::format("landmarks in {} of {} parts of the image, {} needed", cells, kColumns * kRows,
+                       options_.min_cells);
+  }
+  const auto largest_sigma = [](const Eigen::Matrix3d& covariance) {
+    return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues().z());
+  };
+  const double sigma_m = largest_sigma(found.link.covariance.topLeftCorner<3, 3>());
+  const double sigma_deg = largest_sigma(found.link.covariance.bottomRightCorner<3, 3>()) / kDegree;
+  if (sigma_m > options_.max_sigma_m || sigma_deg > options_.max_sigma_deg) {
+    return fmt::format("uncertain by {:.3f} m and {:.2f} deg", sigma_m, sigma_deg);
+  }
+  return {};
+}
+
+double contradiction_sigma(const PosePrediction& a, const PosePrediction& b, const LoopOptions& options) {
+  const Vector6d error = se3_log(a.T_from_to.inverse() * b.T_from_to);
+  Matrix6d covariance = a.covariance + b.covariance;
+  const double margin_rad = options.margin_deg * kDegree;
+  covariance.topLeftCorner<3, 3>().diagonal().array() += options.margin_m * options.margin_m;
+  covariance.bottomRightCorner<3, 3>().diagonal().array() += margin_rad * margin_rad;
+  return std::sqrt(error.dot(covariance.ldlt().solve(error)));
+}
+
+}  // namespace groundloop::slam
