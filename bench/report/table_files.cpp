@@ -78,7 +78,7 @@ slam::Pose parse_pose(const std::vector<std::string>& cells, size_t first, const
 }  // namespace
 
 FrameTable read_frame_table(const std::string& file) {
-  static const std::set<std::string> kTextColumns = {"status", "state_hash", "message"};
+  static const std::set<std::string> kTextColumns = {"status", "state_hash", "message", "faults"};
   std::ifstream in = open_file(file);
   FrameTable table;
   std::string line;

@@ -104,7 +104,7 @@ RunOutcome replay(const ReplayOptions& options, const JobControl& control) {
   for (const slam::FrameResult& frame : core_run.frames) statuses.push_back(frame.status);
   metrics = tracking_metrics(statuses);
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  std::vector<FrameNotes> notes(core_run.frames.size(), {kUnknown, kUnknown, kUnknown, kUnknown});
+  std::vector<FrameNotes> notes(core_run.frames.size(), {kUnknown, kUnknown, kUnknown, kUnknown, ""});
   const RecordedTruth truth = find_truth(options, core.trajectory());
   std::optional<slam::Pose> T_world_map;
   if (!truth.poses.empty()) {

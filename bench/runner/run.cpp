@@ -148,10 +148,10 @@ RunOutcome run_scenario(const sim::Scenario& scenario, std::optional<int64_t> fr
   std::vector<double> render_ms;
   const auto observe = [&](const slam::StereoFrame& frame, const slam::FrameResult& result) {
     const FrameTruth& truth = source.truth(frame.index);
-    const StageErrors errors = stages.judge(result, truth.T_world_left);
+    const StageErrors errors = stages.judge(result, truth.T_world_seen);
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     notes.push_back({truth.render_ms, errors.disparity_px.rmse().value_or(kUnknown),
-                     errors.track_px.rmse().value_or(kUnknown), kUnknown});
+                     errors.track_px.rmse().value_or(kUnknown), kUnknown, truth.faults});
     render_ms.push_back(truth.render_ms);
     exact_mapper.look(frame.index, truth.T_world_left);
     figures.observe(frame, result, core);

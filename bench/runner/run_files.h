@@ -16,6 +16,7 @@ struct FrameNotes {
   double disparity_error_px;
   double track_error_px;
   double position_error_m;
+  std::string faults;  ///< kinds active since the frame before, as "drop+blur"; empty when all was well
 };
 
 // Writers of the run folder's files (README.md lists them). bench/report/run_folder.h reads them. All numbers

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <utility>
+
+#include "sim/faults/image_faults.h"
 
 namespace groundloop::bench {
 
@@ -13,34 +16,69 @@ SimulatedSource::SimulatedSource(const sim::Scenario& scenario, const sim::World
       head_(head),
       rig_(head.rig()),
       simulation_(world, head, scenario),
-      size_(std::min(frames.value_or(simulation_.exposures()), simulation_.exposures())),
-      truth_(static_cast<size_t>(size_)) {}
+      arrivals_(sim::arrivals(scenario.faults, scenario.seed, simulation_.exposures(), head.period_ns())),
+      size_(std::min(frames.value_or(INT64_MAX), static_cast<int64_t>(arrivals_.size()))),
+      truth_(static_cast<size_t>(size_)) {
+  if (size_ > 0) return;
+  throw InputError(Problem{scenario.file, scenario.faults.empty() ? 0 : scenario.faults.front().line,
+                           "faults", "no pair arrives", "faults that let at least one pair through"});
+}
 
 std::optional<sim::Exposure> SimulatedSource::expose() {
-  if (exposed_ == size_) return std::nullopt;
+  if (exposed_ > arrivals_[static_cast<size_t>(size_) - 1].exposure) return std::nullopt;
   ++exposed_;
   return simulation_.advance();
 }
 
-std::optional<slam::StereoFrame> SimulatedSource::render(sim::Renderer& renderer) {
-  const std::optional<sim::Exposure> exposure = exposures_->next();
-  if (!exposure) return std::nullopt;
-
+std::optional<slam::StereoFrame> SimulatedSource::make_pair(sim::Renderer& renderer) {
+  if (made_ == size_) return std::nullopt;
+  const sim::Arrival& arrival = arrivals_[static_cast<size_t>(made_)];
   slam::StereoFrame frame;
-  frame.index = exposure->index;
-  frame.stamp_ns = exposure->stamp_ns;
-  if (exposure->index > 0) frame.T_previous_left = exposure->T_previous_left;
+  frame.index = made_++;
+
+  // the exposures since the last pair, and the motion over all of them
+  slam::Pose T_previous_left = slam::Pose::Identity();
+  while (recent_.empty() || recent_.back().index < arrival.exposure) {
+    std::optional<sim::Exposure> exposure = exposures_->next();
+    if (!exposure) return std::nullopt;
+    T_previous_left = T_previous_left * exposure->T_previous_left;
+    recent_.push_back(std::move(*exposure));
+  }
+  while (recent_.front().index < arrival.images_of) recent_.pop_front();
+  const sim::Exposure& now = recent_.back();
+  const sim::Exposure& seen = recent_.front();
+  frame.stamp_ns = now.stamp_ns;
+  if (frame.index > 0) frame.T_previous_left = T_previous_left;
 
   const auto start = std::chrono::steady_clock::now();
-  renderer.update_scene(*exposure->state);
-  renderer.render_grey({head_.focal_px, head_.cx_px, head_.cy_px, exposure->T_world_left}, frame.left);
-  renderer.render_grey({head_.focal_px, head_.cx_px, head_.cy_px, exposure->T_world_right}, frame.right);
+  render(seen, renderer, frame);
   const std::chrono::duration<double, std::milli> render_ms = std::chrono::steady_clock::now() - start;
 
-  truth_[static_cast<size_t>(frame.index)] = {exposure->stamp_ns, exposure->T_world_body,
-                                              exposure->T_world_left, exposure->T_odom_body,
-                                              render_ms.count()};
+  const int64_t before_ns = frame.index > 0 ? truth_[static_cast<size_t>(frame.index) - 1].stamp_ns : -1;
+  truth_[static_cast<size_t>(frame.index)] = {
+      now.stamp_ns,     now.T_world_body,  now.T_world_left,
+      now.T_odom_body,  seen.T_world_left, sim::fault_label(scenario_.faults, before_ns, now.stamp_ns),
+      render_ms.count()};
   return frame;
+}
+
+void SimulatedSource::render(const sim::Exposure& exposure, sim::Renderer& renderer,
+                             slam::StereoFrame& frame) {
+  renderer.update_scene(*exposure.state);
+  renderer.render_grey({head_.focal_px, head_.cx_px, head_.cy_px, exposure.T_world_left}, frame.left);
+  if (exposure.state_right != exposure.state) renderer.update_scene(*exposure.state_right);
+  renderer.render_grey({head_.focal_px, head_.cx_px, head_.cy_px, exposure.T_world_right}, frame.right);
+}
+
+/// What lens, light and sensor make of a rendered pair, and the cable of their order.
+void SimulatedSource::spoil(slam::StereoFrame& frame) const {
+  const sim::Arrival& arrival = arrivals_[static_cast<size_t>(frame.index)];
+  const double time_s = static_cast<double>(arrival.images_of * head_.period_ns()) * 1e-9;
+  for (const auto& [camera, image] : {std::pair(0, &frame.left), std::pair(1, &frame.right)}) {
+    sim::apply_image_faults(scenario_.faults, scenario_.seed, camera, time_s, *image);
+    sim::apply_sensor_noise(head_.noise, scenario_.seed, camera, arrival.images_of, *image);
+  }
+  if (arrival.swapped) cv::swap(frame.left, frame.right);
 }
 
 std::optional<slam::StereoFrame> SimulatedSource::next() {
@@ -52,13 +90,11 @@ std::optional<slam::StereoFrame> SimulatedSource::next() {
         renderer = std::make_shared<sim::Renderer>(world_, head_.width_px, head_.height_px, scenario_.render);
         renderer_info_ = renderer->info();
       }
-      return render(*renderer);
+      return make_pair(*renderer);
     });
   }
   std::optional<slam::StereoFrame> frame = rendered_->next();
-  if (!frame) return std::nullopt;
-  sim::apply_sensor_noise(head_.noise, scenario_.seed, 0, frame->index, frame->left);
-  sim::apply_sensor_noise(head_.noise, scenario_.seed, 1, frame->index, frame->right);
+  if (frame) spoil(*frame);
   return frame;
 }
 

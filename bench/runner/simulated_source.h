@@ -1,10 +1,13 @@
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "bench/runner/ahead.h"
+#include "sim/faults/arrivals.h"
 #include "sim/head/head.h"
 #include "sim/render/renderer.h"
 #include "sim/scenario/scenario.h"
@@ -20,11 +23,18 @@ struct FrameTruth {
   slam::Pose T_world_body = slam::Pose::Identity();
   slam::Pose T_world_left = slam::Pose::Identity();
   slam::Pose T_odom_body = slam::Pose::Identity();
-  double render_ms = 0;  ///< both images, read back
+  slam::Pose T_world_seen =
+      slam::Pose::Identity();  ///< left camera when the images were taken: T_world_left but for late pairs
+  std::string faults;          ///< kinds active since the pair before, as "drop+blur" (sim/faults/arrivals.h)
+  double render_ms = 0;        ///< both images, read back
 };
 
 /// The simulator as a source of stereo pairs. Physics and rendering run ahead, each in a thread of its own;
-/// sensor noise is added in next(). The truth of each pair goes past the core, into truth().
+/// image faults and sensor noise are added in next(). The truth of each pair goes past the core, into
+/// truth().
+///
+/// A pair that does not arrive (faults: drop, late) leaves no gap in the index, only in the stamps; the
+/// planned motion told with the next pair covers the whole gap, since the robot kept count of it.
 class SimulatedSource : public slam::StereoSource {
  public:
   /// @param frames  deliver only the first so many pairs
@@ -45,17 +55,22 @@ class SimulatedSource : public slam::StereoSource {
 
  private:
   std::optional<sim::Exposure> expose();
-  std::optional<slam::StereoFrame> render(sim::Renderer& renderer);
+  std::optional<slam::StereoFrame> make_pair(sim::Renderer& renderer);
+  void render(const sim::Exposure& exposure, sim::Renderer& renderer, slam::StereoFrame& frame);
+  void spoil(slam::StereoFrame& frame) const;
 
   const sim::Scenario& scenario_;
   const sim::World& world_;
   const sim::HeadModel& head_;
   const slam::StereoRig rig_;
   sim::Simulation simulation_;
+  const std::vector<sim::Arrival> arrivals_;
   const int64_t size_;
   sim::RendererInfo renderer_info_;
   std::vector<FrameTruth> truth_;
   int64_t exposed_ = 0;
+  int64_t made_ = 0;
+  std::deque<sim::Exposure> recent_;                  ///< whose images may still arrive
   std::optional<Ahead<sim::Exposure>> exposures_;     ///< started by the first next()
   std::optional<Ahead<slam::StereoFrame>> rendered_;  ///< takes from exposures_, so it ends first
 };
