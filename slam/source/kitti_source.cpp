@@ -6,6 +6,8 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <numeric>
+#include <set>
 
 #include "slam/source/image_file.h"
 #include "slam/source/text.h"
@@ -69,8 +71,9 @@ StereoRig rig_of(const Projection& P0, const Projection& P1, const std::string& 
   return rig;
 }
 
-std::vector<int64_t> read_times(const std::string& file, std::vector<Problem>& problems) {
+std::vector<int64_t> read_times(const std::string& file, bool any_order, std::vector<Problem>& problems) {
   std::vector<int64_t> stamps_ns;
+  std::set<int64_t> known;
   for (const TextLine& line : read_lines(file, kWantedTimes)) {
     const auto words = split(line.text, " \t");
     const auto stamp_ns = seconds_to_ns(words.front());
@@ -78,8 +81,11 @@ std::vector<int64_t> read_times(const std::string& file, std::vector<Problem>& p
       problems.push_back({file, line.number, "", line.text, "a time in seconds"});
       continue;
     }
-    if (!stamps_ns.empty() && *stamp_ns <= stamps_ns.back()) {
+    if (!any_order && !stamps_ns.empty() && *stamp_ns <= stamps_ns.back()) {
       problems.push_back({file, line.number, "", line.text, "a time after that of the line before"});
+    }
+    if (any_order && !known.insert(*stamp_ns).second) {
+      problems.push_back({file, line.number, "", line.text, "a time that no other pair has"});
     }
     stamps_ns.push_back(*stamp_ns);
   }
@@ -95,6 +101,14 @@ std::vector<std::string> list_images(const std::string& directory, std::vector<P
   if (error) problems.push_back({directory, 0, "", "no such folder", "a folder of PNG images"});
   std::sort(files.begin(), files.end());
   return files;
+}
+
+/// values[order[0]], values[order[1]], ...
+template <class T>
+std::vector<T> rearranged(const std::vector<T>& values, const std::vector<size_t>& order) {
+  std::vector<T> result;
+  for (const size_t i : order) result.push_back(values[i]);
+  return result;
 }
 
 }  // namespace
@@ -114,7 +128,7 @@ KittiSource::KittiSource(const std::string& directory, const SourceOptions& opti
     const auto projections = read_projections(file, problems);
     if (problems.size() == before) rig_ = rig_of(projections.at("P0"), projections.at("P1"), file, problems);
   });
-  collect([&] { stamps_ns_ = read_times(directory + "/times.txt", problems); });
+  collect([&] { stamps_ns_ = read_times(directory + "/times.txt", options.any_order, problems); });
   left_files_ = list_images(directory + "/image_0", problems);
   right_files_ = list_images(directory + "/image_1", problems);
   if (!problems.empty()) throw InputError(std::move(problems));
@@ -128,6 +142,15 @@ KittiSource::KittiSource(const std::string& directory, const SourceOptions& opti
                         fmt::format("{}, one for every line of times.txt", stamps_ns_.size())});
   }
   if (!problems.empty()) throw InputError(std::move(problems));
+  if (options.any_order) {
+    std::vector<size_t> order(stamps_ns_.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::sort(order.begin(), order.end(),
+              [this](size_t a, size_t b) { return stamps_ns_[a] < stamps_ns_[b]; });
+    stamps_ns_ = rearranged(stamps_ns_, order);
+    left_files_ = rearranged(left_files_, order);
+    right_files_ = rearranged(right_files_, order);
+  }
   const cv::Mat first = read_grey_image(left_files_.front());
   rig_.width_px = first.cols, rig_.height_px = first.rows;
   rig_.T_body_left = StereoRig::level_camera({0, 0, options.camera_height_m});

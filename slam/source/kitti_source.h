@@ -11,8 +11,8 @@
 namespace groundloop::slam {
 
 /// A recorded sequence in the layout of the KITTI odometry benchmark: DIR/image_0 and image_1 (rectified PNG,
-/// NNNNNN.png, in order of their names), times.txt (seconds, one a pair), calib.txt (3x4 projections P0 and
-/// P1).
+/// NNNNNN.png, in order of their names), times.txt (seconds, one a pair, rising unless any_order),
+/// calib.txt (3x4 projections P0 and P1).
 class KittiSource : public StereoSource {
  public:
   /// Reads the calibration, the times and the names of the images; the images themselves when asked for.

@@ -104,6 +104,28 @@ TEST(KittiSource, DeliversEveryPairInOrder) {
   EXPECT_FALSE(source.next());
 }
 
+TEST(KittiSource, DeliversPairsListedInAnyOrderInOrderOfTime) {
+  const TemporaryFolder folder;
+  write_sequence(folder);
+  folder.write("times.txt", "0.5\n-98.449999872\n14\n");
+  KittiSource source(folder.path(), {.any_order = true});
+  EXPECT_EQ(source.stamps_ns(), (std::vector<int64_t>{-98449999872, 500000000, 14000000000}));
+  for (const int pair : {1, 0, 2}) {
+    const auto frame = source.next();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(cv::norm(frame->left, image_of(pair, 0), cv::NORM_INF), 0);
+    EXPECT_EQ(cv::norm(frame->right, image_of(pair, 1), cv::NORM_INF), 0);
+  }
+}
+
+TEST(KittiSource, RefusesTwoPairsOfOneTimeInAnyOrder) {
+  const TemporaryFolder folder;
+  write_sequence(folder);
+  folder.write("times.txt", "0.5\n0.1\n0.5\n");
+  EXPECT_EQ(messages(folder, [&] { KittiSource(folder.path(), {.any_order = true}); }),
+            (Lines{"times.txt:3: 0.5: wanted a time that no other pair has"}));
+}
+
 TEST(KittiSource, ConvertsColourToGrey) {
   const TemporaryFolder folder;
   write_sequence(folder);
