@@ -15,13 +15,14 @@ struct LoopOptions {
   int min_inliers = 25;           ///< landmarks that agree on one motion
   double min_inlier_ratio = 0.4;  ///< of the landmarks that should be seen, in both directions
   int min_cells = 8;              ///< of an 8 x 6 grid over the image, that hold an agreeing landmark
-  double max_sigma_m = 0.03;      ///< position uncertainty of a link
-  double max_sigma_deg = 0.3;     ///< rotation uncertainty of a link
-  double gate_sigma = 4.5;        ///< Mahalanobis distance to the predicted pose
-  double margin_m = 0.05;         ///< added to the prediction's standard deviation
-  double margin_deg = 1;          ///< added to the prediction's standard deviation
-  int confirmations = 2;          ///< successive key frames that must agree where nothing is predicted
-  double covered_ratio = 0.6;     ///< a view whose landmarks were found to this share is not stored again
+  double max_sigma_ratio =
+      0.005;                   ///< position uncertainty of a link, relative to the landmarks' median depth
+  double max_sigma_deg = 0.3;  ///< rotation uncertainty of a link
+  double gate_sigma = 4.5;     ///< Mahalanobis distance to the predicted pose
+  double margin_m = 0.05;      ///< added to the prediction's standard deviation
+  double margin_deg = 1;       ///< added to the prediction's standard deviation
+  int confirmations = 2;       ///< successive key frames that must agree where nothing is predicted
+  double covered_ratio = 0.6;  ///< a view whose landmarks were found to this share is not stored again
 
   template <class Archive>
   void visit(Archive& a) {
@@ -34,7 +35,7 @@ struct LoopOptions {
     a("min_inliers", min_inliers, {.min = 6, .max = 1000});
     a("min_inlier_ratio", min_inlier_ratio, {.min = 0, .max = 1});
     a("min_cells", min_cells, {.min = 1, .max = 48});
-    a("max_sigma_m", max_sigma_m, {.min = 1e-4, .max = 10});
+    a("max_sigma_ratio", max_sigma_ratio, {.min = 1e-5, .max = 1});
     a("max_sigma_deg", max_sigma_deg, {.min = 1e-3, .max = 180});
     a("gate_sigma", gate_sigma, {.min = 1, .max = 100});
     a("margin_m", margin_m, {.min = 0, .max = 100});

@@ -22,6 +22,7 @@ constexpr int kMaxDistance = 80;  // bits, of a descriptor match
 constexpr double kRatio = 0.85;
 constexpr double kGoodPrediction_px = 8;  // what KLT from a predicted position copes with
 constexpr double kAgreement_px = 2;
+constexpr double kExpectedResidual = 1.25;  // of noise and depth, in units of sigma_px
 constexpr int kColumns = 8, kRows = 6;
 
 /// Rough points, rough measurements: corners of coarse pyramid levels with block-matching depth.
@@ -50,6 +51,15 @@ bool hidden(const StereoRig& rig, const cv::Mat& half_disparity, const Eigen::Ve
       disparity_around(half_disparity, static_cast<float>(uvu.x()), static_cast<float>(uvu.y()));
   const double expected_px = uvu.x() - uvu.z() - rig.disparity_at_infinity_px();
   return seen_px && *seen_px - rig.disparity_at_infinity_px() > 1.15 * expected_px + 2;
+}
+
+/// Of a view with landmarks.
+double median_depth_m(const StoredView& view) {
+  std::vector<float> depths_m;
+  for (const Landmark& landmark : view.landmarks) depths_m.push_back(landmark.depth_m);
+  const auto middle = depths_m.begin() + static_cast<std::ptrdiff_t>(depths_m.size() / 2);
+  std::nth_element(depths_m.begin(), middle, depths_m.end());
+  return *middle;
 }
 
 /// At most `wanted` of n, evenly spread over the order in which they are kept.
@@ -116,14 +126,10 @@ Verification LoopVerifier::verify(const StoredView& stored, const CurrentView& c
 }
 
 bool LoopVerifier::precise_enough(const StoredView& stored, const PosePrediction& prediction) const {
-  std::vector<float> depths_m;
-  for (const Landmark& landmark : stored.landmarks) depths_m.push_back(landmark.depth_m);
-  if (depths_m.empty()) return false;
-  const auto middle = depths_m.begin() + static_cast<std::ptrdiff_t>(depths_m.size() / 2);
-  std::nth_element(depths_m.begin(), middle, depths_m.end());
+  if (stored.landmarks.empty()) return false;
   const double sigma_m = std::sqrt(prediction.covariance.topLeftCorner<3, 3>().trace());
   const double sigma_rad = std::sqrt(prediction.covariance.bottomRightCorner<3, 3>().trace());
-  return rig_.fx_px * (sigma_m / *middle + sigma_rad) < kGoodPrediction_px;
+  return rig_.fx_px * (sigma_m / median_depth_m(stored) + sigma_rad) < kGoodPrediction_px;
 }
 
 std::optional<Pose> LoopVerifier::coarse_pose(const StoredView& stored, const CurrentView& current,
@@ -164,8 +170,11 @@ Verification LoopVerifier::refine(const StoredView& stored, const CurrentView& c
   }
   found.link = {LinkKind::kLandmarks,   stored.index,        current.view.index,     registered_.T_from_to,
                 registered_.covariance, registered_.inliers, registered_.residual_px};
+  // Misfits beyond the noise are of windows seen from another side: they share causes, so more landmarks do
+  // not average them out as independent noise.
+  found.link.covariance *= std::max(1.0, registered_.residual_px / (kExpectedResidual * sigma_px_));
   found.reverse_ratio = reverse_ratio(current, T_from_to);
-  found.message = refusal(found);
+  found.message = refusal(stored, found);
   found.accepted = found.message.empty();
   return found;
 }
@@ -257,7 +266,7 @@ int LoopVerifier::occupied_cells(const Search& search) const {
 }
 
 /// What speaks against the link, empty when nothing does.
-std::string LoopVerifier::refusal(const Verification& found) const {
+std::string LoopVerifier::refusal(const StoredView& stored, const Verification& found) const {
   if (found.link.inliers < options_.min_inliers) {
     return fmt::format("{} landmarks agree, {} needed", found.link.inliers, options_.min_inliers);
   }
@@ -279,7 +288,7 @@ std::string LoopVerifier::refusal(const Verification& found) const {
   };
   const double sigma_m = largest_sigma(found.link.covariance.topLeftCorner<3, 3>());
   const double sigma_deg = largest_sigma(found.link.covariance.bottomRightCorner<3, 3>()) / kDegree;
-  if (sigma_m > options_.max_sigma_m || sigma_deg > options_.max_sigma_deg) {
+  if (sigma_m > options_.max_sigma_ratio * median_depth_m(stored) || sigma_deg > options_.max_sigma_deg) {
     return fmt::format("uncertain by {:.3f} m and {:.2f} deg", sigma_m, sigma_deg);
   }
   return {};

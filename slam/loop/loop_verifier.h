@@ -75,7 +75,7 @@ class LoopVerifier {
   void find_landmarks(const StoredView& stored, const CurrentView& current, const Pose& T_from_to,
                       Search& search);
   double reverse_ratio(const CurrentView& current, const Pose& T_from_to);
-  std::string refusal(const Verification& found) const;
+  std::string refusal(const StoredView& stored, const Verification& found) const;
   bool find(const ImagePyramid& image, const Eigen::Vector2f& uv_px, const Eigen::Matrix2f& A,
             AffineState& state) const;
   int occupied_cells(const Search& search) const;
