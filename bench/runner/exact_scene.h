@@ -4,6 +4,7 @@
 
 #include "bench/report/footprint.h"
 #include "sim/truth/truth_world.h"
+#include "sim/world/scene_motion.h"
 #include "sim/world/world.h"
 
 namespace groundloop::bench {
@@ -12,8 +13,27 @@ namespace groundloop::bench {
 inline constexpr double kBandMin_m = 0.02;
 inline constexpr double kBandMax_m = 2.0;
 
-/// The exact scene, standing as at the start.
+/// The exact scene, standing as in the world's file, without people.
 sim::TruthWorld exact_scene(const sim::World& world);
+
+/// The exact scene as it is at any time of a scenario.
+class SceneInTime {
+ public:
+  /// Everything as at time 0. Both must outlive this object.
+  SceneInTime(const sim::World& world, const sim::Scenario& scenario);
+
+  /// Puts people and furniture where they are at a time. True when furniture stands elsewhere than before.
+  bool move_to(double time_s);
+  /// What is seen: with people.
+  const sim::TruthWorld& seen() const { return seen_; }
+  /// What a map should hold: without people, furniture where it stands now.
+  const sim::TruthWorld& standing() const { return standing_; }
+
+ private:
+  sim::SceneMotion motion_;
+  sim::World::DataPtr state_;
+  sim::TruthWorld seen_, standing_;
+};
 
 /// Outlines of everything that reaches into the band.
 std::vector<Footprint> scene_outline(const sim::TruthWorld& world);

@@ -64,23 +64,32 @@ struct ExactMap {
 /// Gathers what the true trajectory could see while the run goes on.
 class ExactMapper {
  public:
-  ExactMapper(const sim::TruthWorld& world, const slam::StereoRig& rig, double cell_m)
-      : world_(world), rig_(rig) {
-    exact_.map = world.occupancy(world.bounds(cell_m), kBandMin_m, kBandMax_m);
+  ExactMapper(const SceneInTime& scene, const slam::StereoRig& rig, double cell_m)
+      : scene_(scene), rig_(rig) {
+    exact_.map = scene.standing().occupancy(scene.standing().bounds(cell_m), kBandMin_m, kBandMax_m);
     exact_.sight.assign(exact_.map.geometry.cells(), 0);
+  }
+
+  /// Furniture was moved: a cell that has changed counts from when it is seen again.
+  void look_again() {
+    const slam::OccupancyMap before = exact_.map;
+    exact_.map = scene_.standing().occupancy(before.geometry, kBandMin_m, kBandMax_m);
+    for (size_t i = 0; i < exact_.sight.size(); ++i) {
+      if (exact_.map.value[i] != before.value[i]) exact_.sight[i] = 0;
+    }
   }
 
   void look(int64_t frame, const slam::Pose& T_world_left) {
     if (frame % kSightEvery != 0) return;
-    const std::vector<uint8_t> seen =
-        world_.visible_cells(exact_.map.geometry, rig_, {T_world_left}, kBandMin_m, kBandMax_m, kSight_m);
+    const std::vector<uint8_t> seen = scene_.seen().visible_cells(exact_.map.geometry, rig_, {T_world_left},
+                                                                  kBandMin_m, kBandMax_m, kSight_m);
     for (size_t i = 0; i < seen.size(); ++i) exact_.sight[i] = std::max(exact_.sight[i], seen[i]);
   }
 
   const ExactMap& exact() const { return exact_; }
 
  private:
-  const sim::TruthWorld& world_;
+  const SceneInTime& scene_;
   slam::StereoRig rig_;
   ExactMap exact_;
 };
@@ -140,20 +149,22 @@ RunOutcome run_scenario(const sim::Scenario& scenario, std::optional<int64_t> fr
 
   // drive, see, process
   slam::Pipeline core(rig, options);
-  const sim::TruthWorld truth_world = exact_scene(world);
-  StageJudge stages(truth_world, rig);
-  ExactMapper exact_mapper(truth_world, rig, options.mapping.cell_m);
+  SceneInTime scene(world, scenario);
+  const sim::TruthWorld& truth_world = scene.standing();
+  StageJudge stages(scene.seen(), rig);
+  ExactMapper exact_mapper(scene, rig, options.mapping.cell_m);
   FigureRecorder figures(rig, *source.size());
   std::vector<FrameNotes> notes;
   std::vector<double> render_ms;
   const auto observe = [&](const slam::StereoFrame& frame, const slam::FrameResult& result) {
     const FrameTruth& truth = source.truth(frame.index);
+    if (scene.move_to(static_cast<double>(truth.seen_ns) * 1e-9)) exact_mapper.look_again();
     const StageErrors errors = stages.judge(result, truth.T_world_seen);
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     notes.push_back({truth.render_ms, errors.disparity_px.rmse().value_or(kUnknown),
                      errors.track_px.rmse().value_or(kUnknown), kUnknown, truth.faults});
     render_ms.push_back(truth.render_ms);
-    exact_mapper.look(frame.index, truth.T_world_left);
+    exact_mapper.look(frame.index, truth.T_world_seen);
     figures.observe(frame, result, core);
   };
   const std::string name = fmt::format("{}-{}", scenario.name, scenario.seed);

@@ -55,18 +55,18 @@ std::optional<slam::StereoFrame> SimulatedSource::make_pair(sim::Renderer& rende
   const std::chrono::duration<double, std::milli> render_ms = std::chrono::steady_clock::now() - start;
 
   const int64_t before_ns = frame.index > 0 ? truth_[static_cast<size_t>(frame.index) - 1].stamp_ns : -1;
-  truth_[static_cast<size_t>(frame.index)] = {
-      now.stamp_ns,     now.T_world_body,  now.T_world_left,
-      now.T_odom_body,  seen.T_world_left, sim::fault_label(scenario_.faults, before_ns, now.stamp_ns),
-      render_ms.count()};
+  const std::string faults = sim::fault_label(scenario_.faults, before_ns, now.stamp_ns);
+  truth_[static_cast<size_t>(frame.index)] = {now.stamp_ns,    now.T_world_body,  now.T_world_left,
+                                              now.T_odom_body, seen.T_world_left, seen.stamp_ns,
+                                              faults,          render_ms.count()};
   return frame;
 }
 
 void SimulatedSource::render(const sim::Exposure& exposure, sim::Renderer& renderer,
                              slam::StereoFrame& frame) {
-  renderer.update_scene(*exposure.state);
+  renderer.update_scene(*exposure.state, exposure.lights);
   renderer.render_grey({head_.focal_px, head_.cx_px, head_.cy_px, exposure.T_world_left}, frame.left);
-  if (exposure.state_right != exposure.state) renderer.update_scene(*exposure.state_right);
+  if (exposure.state_right != exposure.state) renderer.update_scene(*exposure.state_right, exposure.lights);
   renderer.render_grey({head_.focal_px, head_.cx_px, head_.cy_px, exposure.T_world_right}, frame.right);
 }
 

@@ -25,6 +25,7 @@ struct FrameTruth {
   slam::Pose T_odom_body = slam::Pose::Identity();
   slam::Pose T_world_seen =
       slam::Pose::Identity();  ///< left camera when the images were taken: T_world_left but for late pairs
+  int64_t seen_ns = 0;         ///< when that was
   std::string faults;          ///< kinds active since the pair before, as "drop+blur" (sim/faults/arrivals.h)
   double render_ms = 0;        ///< both images, read back
 };

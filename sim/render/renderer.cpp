@@ -79,12 +79,28 @@ struct Renderer::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  void update(const mjData& data) {
+  void update(const mjData& data, const LightFactors& lights) {
     mjvCamera camera;  // replaced for every image
     mjv_defaultCamera(&camera);
     // MuJoCo reads the state only, but takes it as non-const.
     mjv_updateScene(&model, const_cast<mjData*>(&data), &option, nullptr, &camera, mjCAT_ALL, &scene);
     geoms.assign(scene.geoms, scene.geoms + scene.ngeom);
+    if (!lights.light.empty()) dim(lights);
+  }
+
+  /// The scene holds the head-light first, then the model's active lights in their order.
+  void dim(const LightFactors& lights) {
+    const auto scale = [](mjvLight& light, float factor) {
+      for (float* colour : {light.ambient, light.diffuse, light.specular}) {
+        for (int i = 0; i < 3; ++i) colour[i] *= factor;
+      }
+    };
+    int next = 0;
+    if (model.vis.headlight.active != 0) scale(scene.lights[next++], lights.ambient);
+    for (int light = 0; light < model.nlight && next < scene.nlight; ++light) {
+      if (model.light_active[light] != 0)
+        scale(scene.lights[next++], lights.light[static_cast<size_t>(light)]);
+    }
   }
 
   void render(const Camera& camera) {
@@ -161,7 +177,7 @@ Renderer::Renderer(const World& world, int width_px, int height_px, const Render
 
 Renderer::~Renderer() = default;
 
-void Renderer::update_scene(const mjData& data) { impl_->update(data); }
+void Renderer::update_scene(const mjData& data, const LightFactors& lights) { impl_->update(data, lights); }
 
 void Renderer::render_grey(const Camera& camera, cv::Mat& grey) {
   impl_->render(camera);

@@ -6,6 +6,7 @@
 
 #include "sim/head/head.h"
 #include "sim/scenario/scenario.h"
+#include "sim/world/lighting.h"
 #include "sim/world/world.h"
 #include "slam/types/pose.h"
 
@@ -34,8 +35,9 @@ class Renderer {
     slam::Pose T_world_camera;  ///< x right, y down, z forward
   };
 
-  /// Takes over the state's geometry; call once before the images of that state.
-  void update_scene(const mjData& data);
+  /// Takes over the state's geometry, and how bright its lights are; call once before the images of that
+  /// state.
+  void update_scene(const mjData& data, const LightFactors& lights = {});
   /// Renders to 8-bit grey (CV_8UC1, rows top-down).
   void render_grey(const Camera& camera, cv::Mat& grey);
   /// Renders to 8-bit BGR, for pictures.

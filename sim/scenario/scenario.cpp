@@ -36,6 +36,11 @@ void report_repeated_keys(const YAML::Node& node, const std::string& path, const
   }
 }
 
+template <class T>
+void remember_lines(const YAML::Node& list, std::vector<T>& items) {
+  for (size_t i = 0; i < items.size(); ++i) items[i].line = line_of(list[i]);
+}
+
 /// Lines that messages need after loading.
 void remember_lines(const YAML::Node& root, Scenario& scenario) {
   if (const YAML::Node start = root["robot"]["start"]; start.IsDefined()) {
@@ -45,7 +50,10 @@ void remember_lines(const YAML::Node& root, Scenario& scenario) {
   for (size_t i = 0; i < scenario.plan.segments.size(); ++i) {
     scenario.plan.segments[i].line = line_of(segments[i]);
   }
-  for (size_t i = 0; i < scenario.faults.size(); ++i) scenario.faults[i].line = line_of(root["faults"][i]);
+  remember_lines(root["faults"], scenario.faults);
+  remember_lines(root["people"], scenario.people);
+  remember_lines(root["moves"], scenario.moves);
+  remember_lines(root["lights"], scenario.lights);
   const YAML::Node slam = root["slam"];
   if (!slam.IsDefined()) return;
   scenario.slam.preset_line = slam["preset"].IsDefined() ? line_of(slam["preset"]) : 0;
@@ -202,6 +210,10 @@ Scenario load_scenario(const std::string& file, const std::vector<Override>& ove
           problems);
   resolve(scenario.head.model, "head.model", root["head"]["model"], scenario, overrides, "a head's YAML file",
           problems);
+  for (size_t i = 0; i < scenario.people.size(); ++i) {
+    resolve(scenario.people[i].model, fmt::format("people[{}].model", i), root["people"][i]["model"],
+            scenario, overrides, "an MJCF file", problems);
+  }
   if (!problems.empty()) throw InputError(tidied(std::move(problems)));
   return scenario;
 }

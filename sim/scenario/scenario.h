@@ -10,6 +10,7 @@
 
 #include "sim/scenario/fault.h"
 #include "sim/scenario/metric_names.h"
+#include "sim/scenario/scenery.h"
 #include "slam/types/config.h"
 
 namespace groundloop::sim {
@@ -198,6 +199,9 @@ struct Scenario {
   RobotChoice robot;
   HeadChoice head;
   Plan plan;
+  std::vector<Person> people;
+  std::vector<Move> moves;
+  std::vector<LightChange> lights;
   std::vector<Fault> faults;
   RenderChoice render;
   SlamChoice slam;
@@ -216,6 +220,9 @@ struct Scenario {
     a("robot", robot, {.required = true});
     a("head", head, {.required = true});
     a("plan", plan, {.required = true});
+    a("people", people, {.doc = "who walks about"});
+    a("moves", moves, {.doc = "furniture that is put elsewhere"});
+    a("lights", lights, {.doc = "lamps that are switched, dimmed or broken"});
     a("faults", faults, {.doc = "what goes wrong, and when"});
     a("render", render, {.doc = "how images are made"});
     a("slam", slam);

@@ -17,10 +17,8 @@ Eigen::Vector3d position(const mjtNum* xyz) { return Eigen::Map<const Eigen::Vec
 
 }  // namespace
 
-CollisionFocus::CollisionFocus(const World& world)
-    : model_(world.model()),
-      robot_body_(world.robot_body()),
-      colliding_geoms_(static_cast<size_t>(model_.nbody)) {
+CollisionFocus::CollisionFocus(const World& world, const mjModel& model)
+    : model_(model), robot_body_(world.robot_body()), colliding_geoms_(static_cast<size_t>(model_.nbody)) {
   const World::DataPtr state = world.make_data();
   bool robot_moves_alone = true;
   for (int geom = 0; geom < model_.ngeom; ++geom) {
@@ -34,8 +32,7 @@ CollisionFocus::CollisionFocus(const World& world)
       const double reach_m = (p_world - position(state->xpos + 3 * robot_body_)).norm() + radius_m;
       robot_radius_m_ = std::max(robot_radius_m_, reach_m);
     } else if (model_.body_weldid[body] == 0) {
-      obstacles_.push_back(
-          {body, p_world, radius_m > 0 ? radius_m : std::numeric_limits<double>::infinity()});
+      obstacles_.push_back({geom, body, radius_m > 0 ? radius_m : std::numeric_limits<double>::infinity()});
     } else {
       robot_moves_alone = false;
     }
@@ -54,7 +51,8 @@ void CollisionFocus::update(const mjData& state) {
 
   for (const Obstacle& obstacle : obstacles_) geoms_in_use_[static_cast<size_t>(obstacle.body)] = 0;
   for (const Obstacle& obstacle : obstacles_) {
-    const double gap_m = (obstacle.p_world - p_world_robot).norm() - obstacle.radius_m - robot_radius_m_;
+    const Eigen::Vector3d p_world = position(state.geom_xpos + 3 * obstacle.geom);
+    const double gap_m = (p_world - p_world_robot).norm() - obstacle.radius_m - robot_radius_m_;
     const auto body = static_cast<size_t>(obstacle.body);
     if (gap_m < kReach_m) geoms_in_use_[body] = colliding_geoms_[body];
   }

@@ -13,20 +13,23 @@ namespace groundloop::sim {
 /// the same.
 class CollisionFocus {
  public:
-  explicit CollisionFocus(const World& world);
+  /// @param model  the world's, with its bodies where they are (SceneMotion); must outlive this object
+  CollisionFocus(const World& world, const mjModel& model);
   CollisionFocus(const CollisionFocus&) = delete;
   CollisionFocus& operator=(const CollisionFocus&) = delete;
 
-  /// The model to step with. Shares everything with the world's but the number of geoms of each body.
+  /// The model to step with. Shares everything with the one given but the number of geoms of each body.
   const mjModel& model() const { return model_; }
   /// Notices what the robot has come near to; call before every step.
   void update(const mjData& state);
+  /// Things stand elsewhere than at the last update: looks round again at the next.
+  void look_again() { updated_ = false; }
 
  private:
-  /// A geom that does not move, as a ball around it.
+  /// A geom that stands, as a ball around it.
   struct Obstacle {
+    int geom;
     int body;
-    Eigen::Vector3d p_world;
     double radius_m;  ///< infinite for planes and height fields
   };
   mjModel model_;

@@ -8,11 +8,16 @@
 #include <utility>
 
 #include "sim/simulation/kidnapping.h"
+#include "sim/world/walk.h"
 
 namespace groundloop::sim {
 namespace {
 
 constexpr double kStep_m = 0.05;
+constexpr double kStep_s = 0.1;
+constexpr double kPersonDistance_m = 0.5;
+constexpr double kPersonRadius_m = 0.25;
+constexpr double kPersonCell_m = 0.05;
 constexpr double kStep_rad = 3 * std::numbers::pi / 180;
 
 Problem touches(const Scenario& scenario, const std::string& key, int line, const Pose2& at,
@@ -84,7 +89,55 @@ std::optional<Problem> trouble_with(const Scenario& scenario, size_t index, cons
   return touches(scenario, key + ".kidnap", fault.line, there, *geom);
 }
 
+/// Where the robot is meant to be at a time.
+Pose2 planned_place(const PlannedPath& path, const PlanCarrier& carrier, double time_s) {
+  const PlannedState planned = path.at(time_s);
+  return carrier.carried(planned.segment, planned.fraction, planned.T_world_body);
+}
+
+std::optional<Problem> too_near(const Scenario& scenario, size_t index, const PlannedPath& path) {
+  const PlanCarrier carrier(scenario, path);
+  const Walk walk(scenario.people[index]);
+  for (double time_s = 0; time_s <= path.duration_s(); time_s += kStep_s) {
+    const Eigen::Vector2d p = walk.at(time_s).p_world;
+    const Pose2 robot = planned_place(path, carrier, time_s);
+    if (std::hypot(p.x() - robot.x_m, p.y() - robot.y_m) >= kPersonDistance_m) continue;
+    return Problem{scenario.file, scenario.people[index].line, fmt::format("people[{}].way", index),
+                   fmt::format("meets the robot at {:.1f} s, x {:.2f} m, y {:.2f} m", time_s, p.x(), p.y()),
+                   fmt::format("a way that keeps {} m away from the robot", kPersonDistance_m)};
+  }
+  return std::nullopt;
+}
+
+std::optional<Problem> walks_into_something(const Scenario& scenario, size_t index, const TruthWorld& truth) {
+  const Walk walk(scenario.people[index]);
+  const slam::GridGeometry grid = truth.bounds(kPersonCell_m);
+  const slam::OccupancyMap map = truth.occupancy(grid, 0.05, 1.75);
+  const int reach = static_cast<int>(kPersonRadius_m / kPersonCell_m);
+  for (double travelled_m = 0; travelled_m <= walk.length_m(); travelled_m += kPersonCell_m) {
+    const Eigen::Vector2d p = walk.point(travelled_m);
+    for (int row = grid.row_of(p.y()) - reach; row <= grid.row_of(p.y()) + reach; ++row) {
+      for (int col = grid.col_of(p.x()) - reach; col <= grid.col_of(p.x()) + reach; ++col) {
+        if (!grid.contains(col, row) || map.value[grid.index(col, row)] == 0) continue;
+        return Problem{scenario.file, scenario.people[index].line, fmt::format("people[{}].way", index),
+                       fmt::format("walks into something at x {:.2f} m, y {:.2f} m", p.x(), p.y()),
+                       fmt::format("a way {} m clear of everything", kPersonRadius_m)};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
+
+void check_people(const Scenario& scenario, const PlannedPath& path, const TruthWorld& truth) {
+  std::vector<Problem> problems;
+  for (size_t person = 0; person < scenario.people.size(); ++person) {
+    if (auto problem = walks_into_something(scenario, person, truth)) problems.push_back(std::move(*problem));
+    if (auto problem = too_near(scenario, person, path)) problems.push_back(std::move(*problem));
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
 
 void check_path(const Scenario& scenario, const PlannedPath& path, const TruthWorld& truth) {
   // Nothing that follows means much when the robot starts inside something.

@@ -16,4 +16,8 @@ inline constexpr double kPathClearance_m =
 /// such a place, and every fault that begins after the plan's end
 void check_path(const Scenario& scenario, const PlannedPath& path, const TruthWorld& truth);
 
+/// People must keep off furniture, and 0.5 m away from the robot as planned (nothing collides with them).
+/// @throws InputError naming the person, the place and the time
+void check_people(const Scenario& scenario, const PlannedPath& path, const TruthWorld& truth);
+
 }  // namespace groundloop::sim

@@ -16,6 +16,7 @@
 #include "sim/simulation/path_check.h"
 #include "sim/simulation/state_pool.h"
 #include "sim/truth/truth_world.h"
+#include "sim/world/scene_motion.h"
 
 namespace groundloop::sim {
 namespace {
@@ -52,6 +53,7 @@ int64_t step_ns_of(const mjModel& model, const Scenario& scenario) {
 struct Simulation::Impl {
   Impl(const World& world_, const HeadModel& head, const Scenario& scenario);
 
+  void check_path_after_moves(const Scenario& scenario);
   void settle();
   void step();
   Pose2 steering_pose() const;
@@ -61,7 +63,9 @@ struct Simulation::Impl {
   void tell_expected_motion(Exposure& exposure);
 
   const World& world;
-  const mjModel& model;
+  SceneMotion motion;
+  const mjModel& model;  ///< with everything where it is
+  const Lighting lighting;
   const std::vector<Fault> faults;
   Feedback feedback;
   Pose2 T_world_start;
@@ -86,7 +90,9 @@ struct Simulation::Impl {
 
 Simulation::Impl::Impl(const World& world_, const HeadModel& head, const Scenario& scenario)
     : world(world_),
-      model(world.model()),
+      motion(world, scenario),
+      model(motion.model()),
+      lighting(model, scenario),
       faults(scenario.faults),
       feedback(scenario.plan.feedback),
       scenario_file(scenario.file),
@@ -100,14 +106,17 @@ Simulation::Impl::Impl(const World& world_, const HeadModel& head, const Scenari
       exposures(static_cast<int64_t>(std::floor(path.duration_s() * 1e9 / static_cast<double>(period_ns))) +
                 1),
       state(world.make_data()),
-      focus(world),
+      focus(world, model),
       pool(model),
       kidnapping(world_, faults),
       angles({0, 0}),
       wheels(drive.limits, 0, 0),
       odometry(scenario.robot.odometry, drive.limits, scenario.seed, 0, 0) {
   T_world_start = path.at(0).T_world_body;
+  update_kinematics(model, *state);
   check_path(scenario, path, TruthWorld(world, *state));
+  if (!scenario.moves.empty()) check_path_after_moves(scenario);
+  check_people(scenario, path, TruthWorld(world, *state));
   settle();
   const auto [left_rad, right_rad] = rolled_rad(*state);
   angles = WheelAngles({left_rad, right_rad});
@@ -118,6 +127,15 @@ Simulation::Impl::Impl(const World& world_, const HeadModel& head, const Scenari
 /// How far the wheels have rolled.
 std::array<double, 2> Simulation::Impl::rolled_rad(const mjData& data) const {
   return {data.qpos[drive.left_qpos], data.qpos[drive.right_qpos]};
+}
+
+/// The path must be clear of furniture wherever it stands, at any time: simple, and on the safe side.
+void Simulation::Impl::check_path_after_moves(const Scenario& scenario) {
+  motion.place(path.duration_s());
+  update_kinematics(model, *state);
+  check_path(scenario, path, TruthWorld(world, *state));
+  motion.place(0);
+  update_kinematics(model, *state);
 }
 
 /// Lets the robot sink into its contacts before time starts.
@@ -144,6 +162,7 @@ void Simulation::Impl::step() {
   const double step_s = model.opt.timestep;
   const double time_s = static_cast<double>(steps) * step_s;
   kidnapping.update(steps * step_ns, *state);
+  if (motion.place(time_s)) focus.look_again();
   const PlannedState planned = path.at(time_s);
   const BodyTwist wanted =
       feedback == Feedback::kPlan ? planned.twist : tracking_twist(planned, steering_pose());
@@ -160,6 +179,7 @@ void Simulation::Impl::step() {
 
 /// A copy of the state, moved on with its velocities to a time less than a step (or a trigger offset) away.
 std::shared_ptr<mjData> Simulation::Impl::state_at(int64_t stamp_ns) {
+  if (motion.place(static_cast<double>(stamp_ns) * 1e-9)) focus.look_again();
   const std::shared_ptr<mjData> copy = pool.copy(*state);
   mj_integratePos(&model, copy->qpos, copy->qvel, static_cast<double>(stamp_ns - steps * step_ns) * 1e-9);
   update_kinematics(model, *copy);
@@ -179,6 +199,8 @@ Exposure Simulation::Impl::expose() {
   if (const double offset_s = trigger_offset_s(faults, time_s); offset_s != 0) {
     exposure.state_right = state_at(exposure.stamp_ns + std::llround(offset_s * 1e9));
   }
+
+  exposure.lights = lighting.at(time_s);
 
   // truth
   exposure.T_world_body = body_pose(world, *exposure.state);

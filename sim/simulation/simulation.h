@@ -6,6 +6,7 @@
 
 #include "sim/head/head.h"
 #include "sim/scenario/scenario.h"
+#include "sim/world/lighting.h"
 #include "sim/world/world.h"
 #include "slam/types/pose.h"
 
@@ -24,6 +25,7 @@ struct Exposure {
   slam::Pose T_previous_left;  ///< motion since the last exposure as planned, or as odometry says when it
                                ///< steers (what the core may know); identity at the first
   std::shared_ptr<const mjData> state;  ///< MuJoCo state to render; may be kept, and freed in any thread
+  LightFactors lights;                  ///< how bright the lamps are
   std::shared_ptr<const mjData> state_right;  ///< the same for the right camera; another one only when it
                                               ///< exposes at another time
 };

@@ -17,6 +17,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Keeps rounding from hiding a surface that lies in the face of its own bounding box.
 constexpr double kVolumeMargin_m = 1e-9;
 
+btDbvtVolume volume_of(const SceneGeom& geom) {
+  const Vector3d margin = Vector3d::Constant(kVolumeMargin_m);
+  return btDbvtVolume::FromMM(to_bullet(geom.extent.min() - margin), to_bullet(geom.extent.max() + margin));
+}
+
 /// Where the ray enters the node's volume; infinity when it does not before t_max.
 double entry(const btDbvtNode& node, const Vector3d& origin, const Vector3d& inverse_direction,
              double t_max) {
@@ -49,14 +54,28 @@ OrientedBox SceneGeom::local(const AlignedBox3d& box_world) const {
           box_world.sizes() / 2};
 }
 
-SceneTree::SceneTree(std::vector<SceneGeom> geoms) : geoms_(std::move(geoms)) {
-  for (SceneGeom& geom : geoms_) {
-    const Vector3d margin = Vector3d::Constant(kVolumeMargin_m);
-    tree_.insert(
-        btDbvtVolume::FromMM(to_bullet(geom.extent.min() - margin), to_bullet(geom.extent.max() + margin)),
-        &geom);
+Vector3d SceneGeom::support(const Vector3d& direction) const {
+  return T_world_geom * solid->support(T_world_geom.linear().transpose() * direction);
+}
+
+void SceneGeom::measure() {
+  extent.setEmpty();
+  for (int axis = 0; axis < 3; ++axis) {
+    extent.extend(support(Vector3d::Unit(axis)));
+    extent.extend(support(-Vector3d::Unit(axis)));
   }
+}
+
+SceneTree::SceneTree(std::vector<SceneGeom> geoms) : geoms_(std::move(geoms)) {
+  for (SceneGeom& geom : geoms_) leaves_.push_back(tree_.insert(volume_of(geom), &geom));
   tree_.optimizeTopDown();
+}
+
+void SceneTree::move(size_t place, const slam::Pose& T_world_geom) {
+  geoms_[place].T_world_geom = T_world_geom;
+  geoms_[place].measure();
+  btDbvtVolume volume = volume_of(geoms_[place]);
+  tree_.update(leaves_[place], volume);
 }
 
 std::optional<SceneTree::Hit> SceneTree::cast(const Vector3d& origin, const Vector3d& direction,

@@ -26,6 +26,10 @@ struct SceneGeom {
   /// First surface along origin + t direction, both in the world; the normal too.
   std::optional<SurfaceHit> first_hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                       double t_max) const;
+  /// Farthest point in a direction; both in the world.
+  Eigen::Vector3d support(const Eigen::Vector3d& direction) const;
+  /// Sets the extent from solid and place.
+  void measure();
   /// The axis-aligned world box as the solid sees it.
   OrientedBox local(const Eigen::AlignedBox3d& box_world) const;
 };
@@ -36,6 +40,8 @@ class SceneTree {
   explicit SceneTree(std::vector<SceneGeom> geoms);
 
   const std::vector<SceneGeom>& geoms() const { return geoms_; }
+  /// Puts the geom of a place in geoms() elsewhere.
+  void move(size_t place, const slam::Pose& T_world_geom);
 
   struct Hit {
     const SceneGeom* geom;
@@ -51,6 +57,7 @@ class SceneTree {
 
  private:
   std::vector<SceneGeom> geoms_;
+  std::vector<btDbvtNode*> leaves_;  ///< of each geom
   btDbvt tree_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -60,15 +61,11 @@ slam::Pose pose_of_geom(const mjData& data, int geom) {
   return T_world_geom;
 }
 
-Vector3d support_in_world(const SceneGeom& geom, const Vector3d& direction) {
-  return geom.T_world_geom * geom.solid->support(geom.T_world_geom.linear().transpose() * direction);
-}
-
-std::vector<SceneGeom> scene_geoms(const mjModel& model, const mjData& data, int robot_body) {
+std::vector<SceneGeom> scene_geoms(const mjModel& model, const mjData& data,
+                                   const std::function<bool(int geom)>& left_out) {
   std::vector<SceneGeom> geoms;
   for (int id = 0; id < model.ngeom; ++id) {
-    const bool robot = robot_body >= 0 && model.body_rootid[model.geom_bodyid[id]] == robot_body;
-    if (robot || !is_visible(model, id)) continue;
+    if (left_out(id) || !is_visible(model, id)) continue;
     SceneGeom geom;
     geom.id = id;
     geom.name = name_of_geom(model, id);
@@ -76,10 +73,7 @@ std::vector<SceneGeom> scene_geoms(const mjModel& model, const mjData& data, int
     geom.T_world_geom = pose_of_geom(data, id);
     const mjtNum* size = model.geom_size + 3 * id;
     geom.unbounded = model.geom_type[id] == mjGEOM_PLANE && (size[0] <= 0 || size[1] <= 0);
-    for (int axis = 0; axis < 3; ++axis) {
-      geom.extent.extend(support_in_world(geom, Vector3d::Unit(axis)));
-      geom.extent.extend(support_in_world(geom, -Vector3d::Unit(axis)));
-    }
+    geom.measure();
     geoms.push_back(std::move(geom));
   }
   return geoms;
@@ -127,19 +121,42 @@ struct SightMap {
 }  // namespace
 
 struct TruthWorld::Impl {
-  Impl(const mjModel& mj_model, const mjData& data, int robot_body)
-      : model(mj_model), scene(scene_geoms(mj_model, data, robot_body)), robot(mj_model, robot_body) {}
+  Impl(const mjModel& mj_model, const mjData& data, int robot_body, const std::function<bool(int)>& left_out)
+      : model(mj_model), scene(scene_geoms(mj_model, data, left_out)), robot(mj_model, robot_body) {}
 
   const mjModel& model;
+  std::function<bool(int geom)> is_person = [](int) { return false; };
   SceneTree scene;
   RobotFootprint robot;
 };
 
 TruthWorld::TruthWorld(const mjModel& model, const mjData& data, int robot_body)
-    : impl_(std::make_unique<Impl>(model, data, robot_body)) {}
-TruthWorld::TruthWorld(const World& world, const mjData& data)
-    : TruthWorld(world.model(), data, world.robot_body()) {}
+    : impl_(std::make_unique<Impl>(model, data, robot_body, [&](int geom) {
+        return robot_body >= 0 && model.body_rootid[model.geom_bodyid[geom]] == robot_body;
+      })) {}
+TruthWorld::TruthWorld(const World& world, const mjData& data, People people)
+    : impl_(std::make_unique<Impl>(world.model(), data, world.robot_body(), [&](int geom) {
+        return world.is_robot_geom(geom) || (people == People::kLeftOut && world.is_person_geom(geom));
+      })) {
+  impl_->is_person = [&world](int geom) { return world.is_person_geom(geom); };
+}
 TruthWorld::~TruthWorld() = default;
+
+void TruthWorld::move_to(const mjData& data) {
+  const std::vector<SceneGeom>& geoms = impl_->scene.geoms();
+  for (size_t i = 0; i < geoms.size(); ++i) {
+    const slam::Pose T_world_geom = pose_of_geom(data, geoms[i].id);
+    if (T_world_geom.matrix() != geoms[i].T_world_geom.matrix()) impl_->scene.move(i, T_world_geom);
+  }
+}
+
+std::optional<slam::Pose> TruthWorld::T_world_geom(int geom) const {
+  const std::vector<SceneGeom>& geoms = impl_->scene.geoms();
+  const auto found = std::lower_bound(geoms.begin(), geoms.end(), geom,
+                                      [](const SceneGeom& g, int id) { return g.id < id; });
+  if (found == geoms.end() || found->id != geom) return std::nullopt;
+  return found->T_world_geom;
+}
 
 std::optional<RayHit> TruthWorld::cast(const Vector3d& origin_world, const Vector3d& direction_world,
                                        double max_distance_m) const {
@@ -218,8 +235,9 @@ std::vector<uint8_t> TruthWorld::visible_cells(const slam::GridGeometry& grid, c
         const Vector3d ray_left((u_px - rig.cx_px) / rig.fx_px, (v_px - rig.cy_px) / rig.fy_px, 1);
         const Vector3d ray = T.linear() * ray_left.normalized();
         const auto hit = impl_->scene.cast(T.translation(), ray, max_range_m);
+        const bool face = hit && !impl_->is_person(hit->geom->id);
         sight.add(T.translation(), ray, hit ? hit->surface.t : max_range_m,
-                  hit ? &hit->surface.normal : nullptr);
+                  face ? &hit->surface.normal : nullptr);
       }
     }
   }
@@ -241,7 +259,7 @@ std::vector<Outline> TruthWorld::footprints(double z_min_m, double z_max_m) cons
     std::vector<Vector2d> points;
     for (int i = 0; i < kOutlineDirections; ++i) {
       const double angle = 2 * std::numbers::pi * (i + 0.5) / kOutlineDirections;
-      points.push_back(support_in_world(geom, {std::cos(angle), std::sin(angle), 0}).head<2>());
+      points.push_back(geom.support({std::cos(angle), std::sin(angle), 0}).head<2>());
     }
     outlines.push_back(
         {geom.id, geom.name, body_name(impl_->model, geom.id), convex_hull(points), low, high});

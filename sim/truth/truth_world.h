@@ -27,6 +27,10 @@ enum CellSight : uint8_t {
   kFaceSeen = 2,  ///< a ray ended on an upright face of geometry in it (steeper than 45 degrees)
 };
 
+/// Whether those who walk about belong to the scene: they are seen, but they are no part of what a map should
+/// hold.
+enum class People { kLeftOut, kSeen };
+
 /// A geom seen from above: what a figure of the scene draws.
 struct Outline {
   int geom = -1;                         ///< MuJoCo geom id
@@ -42,18 +46,23 @@ struct Outline {
 /// (which MuJoCo does not draw: collision-only) and geoms of alpha 0 are left out. Planes are the rectangles
 /// that are drawn. Curved geoms are the exact quadrics; the renderer draws facets whose corners lie on them.
 ///
-/// All members are const and may be used by several threads.
+/// All members but move_to() are const and may be used by several threads.
 class TruthWorld {
  public:
   /// @param world  must outlive this object
   /// @param data   state with positions computed (mj_forward or mj_kinematics); geoms are taken where they
   /// are now
-  TruthWorld(const World& world, const mjData& data);
+  TruthWorld(const World& world, const mjData& data, People people = People::kLeftOut);
   /// The same of a bare model; robot_body is the root of the body tree to leave out, -1 for none.
   TruthWorld(const mjModel& model, const mjData& data, int robot_body);
   ~TruthWorld();
   TruthWorld(const TruthWorld&) = delete;
   TruthWorld& operator=(const TruthWorld&) = delete;
+
+  /// Takes the geoms where they are now in another state of the same model.
+  void move_to(const mjData& data);
+  /// Where a geom is; none when it is not part of the scene.
+  std::optional<slam::Pose> T_world_geom(int geom) const;
 
   /// First surface along a ray, from either side; direction need not be of unit length, max_distance_m is
   /// finite.
@@ -77,7 +86,7 @@ class TruthWorld {
   /// What the left camera saw of each cell of `geometry` from these poses, as CellSight: not 0 where a pixel
   /// ray crosses the cell between the two heights before, or at, its first hit and not farther than
   /// max_range_m along the ray. A face counts for the cell behind it, which holds the geometry. 128 x 40
-  /// rays an image, spread evenly.
+  /// rays an image, spread evenly. What is behind people is not seen, and they themselves are no faces.
   std::vector<uint8_t> visible_cells(const slam::GridGeometry& geometry, const slam::StereoRig& rig,
                                      const std::vector<slam::Pose>& T_world_left, double z_min_m,
                                      double z_max_m, double max_range_m) const;

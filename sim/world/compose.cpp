@@ -290,7 +290,7 @@ void check_names(const MjcfElement& world, const MjcfElement& robot, std::vector
 
 }  // namespace
 
-MjcfElement compose_mjcf(MjcfElement world, MjcfElement robot) {
+MjcfElement compose_mjcf(MjcfElement world, MjcfElement robot, std::vector<MjcfElement> people) {
   std::vector<Problem> problems;
   check_names(world, robot, problems);
   MjcfElement scene{"mujoco", {{"model", world.get("model", "world")}}, {}, world.file, world.line};
@@ -309,6 +309,9 @@ MjcfElement compose_mjcf(MjcfElement world, MjcfElement robot) {
     if (!one_of(section.tag, {"compiler", "option", "size", "keyframe", "visual", "statistic"})) {
       scene.children.push_back(std::move(section));
     }
+  }
+  for (MjcfElement& person : people) {
+    for (MjcfElement& section : person.children) scene.children.push_back(std::move(section));
   }
   return scene;
 }

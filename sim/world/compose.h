@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "sim/world/mjcf.h"
 
@@ -13,8 +14,9 @@ namespace groundloop::sim {
 ///  - gravity, wind, magnetic field and medium come from the world, solver settings from the robot;
 ///  - `<visual>` and `<statistic>` come from the world; key frames of both are dropped (the scenario places
 ///  the robot).
+///  - people (read_person) come as they are, with MuJoCo's own defaults.
 /// @throws InputError: a name used in both files, or settings that cannot both hold
-MjcfElement compose_mjcf(MjcfElement world, MjcfElement robot);
+MjcfElement compose_mjcf(MjcfElement world, MjcfElement robot, std::vector<MjcfElement> people = {});
 
 /// The body of a robot file that has a free joint; gets the name "robot" when it has none.
 /// @throws InputError when there is none, or more than one

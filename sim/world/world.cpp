@@ -14,6 +14,7 @@
 
 #include "sim/world/compose.h"
 #include "sim/world/mjcf.h"
+#include "sim/world/people.h"
 
 namespace groundloop::sim {
 namespace {
@@ -79,26 +80,38 @@ void prepare_for_cameras(mjModel& model) {
 
 }  // namespace
 
-World::World(ModelPtr model, int robot_body, const StartPose& start)
-    : model_(std::move(model)), robot_body_(robot_body), start_(start) {
+World::World(ModelPtr model, int robot_body, std::vector<int> people, const StartPose& start)
+    : model_(std::move(model)), robot_body_(robot_body), people_(std::move(people)), start_(start) {
   prepare_for_cameras(*model_);
 }
 
 World World::load(const Scenario& scenario) {
   MjcfElement world = read_mjcf(scenario.world);
   MjcfElement robot = read_mjcf(scenario.robot.model);
+  std::vector<MjcfElement> people;
+  for (const Person& person : scenario.people) people.push_back(read_person(person.model, person.name));
   const std::string body = robot_root_body(robot);
-  ModelPtr model = compile(compose_mjcf(std::move(world), std::move(robot)));
-  const int robot_body = mj_name2id(model.get(), mjOBJ_BODY, body.c_str());
-  return World(std::move(model), robot_body, scenario.robot.start);
+  ModelPtr model = compile(compose_mjcf(std::move(world), std::move(robot), std::move(people)));
+  const auto body_id = [&](const std::string& name) {
+    return mj_name2id(model.get(), mjOBJ_BODY, name.c_str());
+  };
+  const int robot_body = body_id(body);
+  std::vector<int> people_bodies;
+  for (const Person& person : scenario.people) people_bodies.push_back(body_id(person.name));
+  return World(std::move(model), robot_body, std::move(people_bodies), scenario.robot.start);
 }
 
 World World::load_file(const std::string& world_file) {
-  return World(compile(read_mjcf(world_file)), -1, {});
+  return World(compile(read_mjcf(world_file)), -1, {}, {});
 }
 
 bool World::is_robot_geom(int geom) const {
   return robot_body_ >= 0 && model_->body_rootid[model_->geom_bodyid[geom]] == robot_body_;
+}
+
+bool World::is_person_geom(int geom) const {
+  const int root = model_->body_rootid[model_->geom_bodyid[geom]];
+  return std::find(people_.begin(), people_.end(), root) != people_.end();
 }
 
 World::DataPtr World::make_data() const {

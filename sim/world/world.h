@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "sim/scenario/scenario.h"
 
@@ -23,6 +24,7 @@ class World {
   const mjModel& model() const { return *model_; }
   int robot_body() const { return robot_body_; }  ///< MuJoCo body id; -1 without a robot
   bool is_robot_geom(int geom) const;             ///< part of the robot's body tree
+  bool is_person_geom(int geom) const;            ///< part of someone who walks about
 
   using ModelPtr = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
   using DataPtr = std::unique_ptr<mjData, decltype(&mj_deleteData)>;
@@ -30,9 +32,10 @@ class World {
   DataPtr make_data() const;
 
  private:
-  World(ModelPtr model, int robot_body, const StartPose& start);
+  World(ModelPtr model, int robot_body, std::vector<int> people, const StartPose& start);
   ModelPtr model_;
   int robot_body_;
+  std::vector<int> people_;  ///< root bodies
   StartPose start_;
 };
 

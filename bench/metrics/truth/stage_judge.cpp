@@ -76,13 +76,14 @@ StageJudge::StageJudge(const sim::TruthWorld& truth, const slam::StereoRig& rig)
 StageErrors StageJudge::judge(const slam::FrameResult& frame, const slam::Pose& T_world_left) {
   StageErrors errors;
   const slam::Pose T_left_world = T_world_left.inverse();
-  std::map<int64_t, Vector3d> alive_world;
+  std::map<int64_t, FirstView> alive;
   for (const slam::FeatureObservation& feature : frame.features) {
-    const auto first_view = first_view_world_.find(feature.id);
-    const bool tracked = first_view != first_view_world_.end();
+    const auto first_view = first_views_.find(feature.id);
+    const bool tracked = first_view != first_views_.end();
     if (tracked) {
-      alive_world.insert(*first_view);
-      const Vector3d p_left = T_left_world * first_view->second;
+      alive.insert(*first_view);
+      const FirstView& view = first_view->second;
+      const Vector3d p_left = T_left_world * *truth_.T_world_geom(view.geom) * view.p_geom;
       if (p_left.z() > 0) {
         const Eigen::Vector2d seen_px(feature.u_left_px, feature.v_left_px);
         const double error_px = (seen_px - rig_.project(p_left).head<2>()).norm();
@@ -90,35 +91,46 @@ StageErrors StageJudge::judge(const slam::FrameResult& frame, const slam::Pose& 
       }
     }
     if (tracked && !feature.has_right) continue;
-    const auto depth_m = true_depth_m(feature, T_world_left);
-    if (!depth_m) continue;
-    if (feature.has_right) judge_stereo(feature, *depth_m, errors);
+    const auto seen = true_surface(feature, T_world_left);
+    if (!seen) continue;
+    if (feature.has_right) judge_stereo(feature, seen->depth_m, errors);
     if (!tracked) {
-      const Vector3d p_left = back_project(rig_, feature.u_left_px, feature.v_left_px, *depth_m);
-      alive_world.emplace(feature.id, T_world_left * p_left);
+      const Vector3d p_left = back_project(rig_, feature.u_left_px, feature.v_left_px, seen->depth_m);
+      const slam::Pose T_geom_world = truth_.T_world_geom(seen->geom)->inverse();
+      alive.emplace(feature.id, FirstView{seen->geom, T_geom_world * (T_world_left * p_left)});
     }
   }
-  first_view_world_ = std::move(alive_world);
+  first_views_ = std::move(alive);
   judge_registration(frame, T_world_left, errors);
   total_ += errors;
   return errors;
 }
 
-std::optional<double> StageJudge::true_depth_m(const slam::FeatureObservation& feature,
-                                               const slam::Pose& T_world_left) const {
+std::optional<StageJudge::Surface> StageJudge::surface(const slam::Pose& T_world_left, double u_px,
+                                                       double v_px) const {
+  constexpr double kFarthest_m = 100;
+  const Vector3d ray_left = back_project(rig_, u_px, v_px, 1);
+  const auto hit = truth_.cast(T_world_left.translation(), T_world_left.linear() * ray_left,
+                               kFarthest_m * ray_left.norm());
+  if (!hit) return std::nullopt;
+  return Surface{hit->distance_m / ray_left.norm(), hit->geom};
+}
+
+std::optional<StageJudge::Surface> StageJudge::true_surface(const slam::FeatureObservation& feature,
+                                                            const slam::Pose& T_world_left) const {
   const double u_px = feature.u_left_px, v_px = feature.v_left_px;
-  auto best_m = truth_.depth_m(rig_, T_world_left, u_px, v_px);
-  if (!feature.has_right) return best_m;
-  const auto miss_px = [&](const std::optional<double>& depth_m) {
-    return depth_m ? std::abs(disparity_error_px(rig_, feature, *depth_m)) : HUGE_VAL;
+  auto best = surface(T_world_left, u_px, v_px);
+  if (!feature.has_right) return best;
+  const auto miss_px = [&](const std::optional<Surface>& candidate) {
+    return candidate ? std::abs(disparity_error_px(rig_, feature, candidate->depth_m)) : HUGE_VAL;
   };
-  if (miss_px(best_m) <= kOutlier_px) return best_m;
+  if (miss_px(best) <= kOutlier_px) return best;
   constexpr std::array<std::pair<double, double>, 4> kNeighbours = {{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
   for (const auto& [du_px, dv_px] : kNeighbours) {
-    const auto depth_m = truth_.depth_m(rig_, T_world_left, u_px + du_px, v_px + dv_px);
-    if (miss_px(depth_m) < miss_px(best_m)) best_m = depth_m;
+    const auto neighbour = surface(T_world_left, u_px + du_px, v_px + dv_px);
+    if (miss_px(neighbour) < miss_px(best)) best = neighbour;
   }
-  return best_m;
+  return best;
 }
 
 void StageJudge::judge_stereo(const slam::FeatureObservation& feature, double true_depth_m,

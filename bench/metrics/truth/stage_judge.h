@@ -54,7 +54,8 @@ struct StageErrors {
   Metrics metrics() const;
 };
 
-/// Judges the stages of one run frame by frame. The scene must stand still.
+/// Judges the stages of one run frame by frame. Where something moves (sim::TruthWorld::move_to), the truth
+/// must be as it was seen in the frame that is judged; a surface point moves with its geom.
 class StageJudge {
  public:
   /// @param truth  must outlive the judge
@@ -68,9 +69,15 @@ class StageJudge {
   const StageErrors& total() const { return total_; }
 
  private:
-  /// Judged stereo match: the true depth of the feature, none where there is no surface.
-  std::optional<double> true_depth_m(const slam::FeatureObservation& feature,
-                                     const slam::Pose& T_world_left) const;
+  /// Where a pixel's ray meets the scene.
+  struct Surface {
+    double depth_m = 0;
+    int geom = -1;
+  };
+  std::optional<Surface> surface(const slam::Pose& T_world_left, double u_px, double v_px) const;
+  /// The true surface under a feature, none where there is none.
+  std::optional<Surface> true_surface(const slam::FeatureObservation& feature,
+                                      const slam::Pose& T_world_left) const;
   void judge_stereo(const slam::FeatureObservation& feature, double true_depth_m, StageErrors& errors) const;
   void judge_registration(const slam::FrameResult& frame, const slam::Pose& T_world_left,
                           StageErrors& errors);
@@ -80,9 +87,14 @@ class StageJudge {
     slam::Pose T_map_left;
     slam::Pose T_world_left;
   };
+  /// A surface point, and the geom that it belongs to.
+  struct FirstView {
+    int geom;
+    Eigen::Vector3d p_geom;
+  };
   const sim::TruthWorld& truth_;
   slam::StereoRig rig_;
-  std::map<int64_t, Eigen::Vector3d> first_view_world_;  ///< surface points under the features now alive
+  std::map<int64_t, FirstView> first_views_;  ///< of the features now alive
   std::optional<KeyFrame> last_key_frame_;
   StageErrors total_;
 };

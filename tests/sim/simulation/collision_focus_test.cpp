@@ -35,7 +35,7 @@ TEST(CollisionFocus, ContactsAreTheSame) {
       "  speed_mps: 0.2\n  segments: [{straight_m: 1}]\n");
   const World world = World::load(scenario);
   const std::vector<double> everything = drive_on(world, world.model(), nullptr);
-  CollisionFocus focus(world);
+  CollisionFocus focus(world, world.model());
   EXPECT_EQ(drive_on(world, focus.model(), &focus), everything) << "to the last bit";
   EXPECT_LT(everything[0], 1.9)
       << "the post stopped it: the test would not notice missing contacts otherwise";
@@ -55,7 +55,7 @@ TEST(CollisionFocus, LooksOnlyAtWhatIsInReach) {
   const auto geoms = [&](const CollisionFocus& focus, const char* body) {
     return focus.model().body_geomnum[mj_name2id(&world.model(), mjOBJ_BODY, body)];
   };
-  CollisionFocus focus(world);
+  CollisionFocus focus(world, world.model());
   const World::DataPtr state = world.make_data();
   focus.update(*state);
   EXPECT_EQ(geoms(focus, "world"), 1) << "the floor is always there";
@@ -75,7 +75,7 @@ TEST(CollisionFocus, WhereOtherThingsMoveNothingIsLeftOut) {
                                     "<body name='far' pos='9 0 0.5'><geom type='sphere' size='0.1'/></body>"),
       "  speed_mps: 0.2\n  segments: [{straight_m: 0}]\n");
   const World world = World::load(scenario);
-  CollisionFocus focus(world);
+  CollisionFocus focus(world, world.model());
   focus.update(*world.make_data());
   EXPECT_EQ(focus.model().body_geomnum[mj_name2id(&world.model(), mjOBJ_BODY, "far")], 1);
 }
