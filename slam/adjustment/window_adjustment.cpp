@@ -1,0 +1,448 @@
+#include "slam/adjustment/window_adjustment.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "slam/adjustment/relative_pose.h"
+
+namespace groundloop::slam {
+namespace {
+
+constexpr double kFirstDamping = 1e-6, kLeastDamping = 1e-12, kMostDamping = 1e6;
+constexpr double kConverged = 1e-12;     // decrease of the cost, relative to it
+constexpr double kLeastPivot = 1e-8;     // of a matrix that is not singular, see regular()
+constexpr double kChi2Median3 = 2.3660;  // median of chi-square with three degrees of freedom
+
+using LowerFactor = Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>;
+
+/// Whether a Cholesky factor L of H = L L^T is that of a matrix far from singular: what is left of each
+/// unknown when those before it are known no longer is a fair part of what is known of it given all others.
+template <class Factor, class Diagonal>
+bool regular(const Factor& L, const Diagonal& diagonal) {
+  return (L.diagonal().array().square() > kLeastPivot * diagonal.array()).all();
+}
+
+/// Inverse of a 3x3 information matrix; false when it is singular.
+bool invert(const Eigen::Matrix3d& H, Eigen::Matrix3d& inverse) {
+  const Eigen::LLT<Eigen::Matrix3d> llt(H);
+  if (llt.info() != Eigen::Success || !regular(llt.matrixLLT(), H.diagonal())) return false;
+  inverse = llt.solve(Eigen::Matrix3d::Identity());
+  return true;
+}
+
+}  // namespace
+
+Matrix6d planned_motion_covariance(const Pose& T_from_to, double plan_sigma_ratio) {
+  const double degree = std::numbers::pi / 180;
+  const double sigma_m = 1e-3 + plan_sigma_ratio * T_from_to.translation().norm();
+  const double sigma_rad = 0.05 * degree + plan_sigma_ratio * rotation_angle_rad(T_from_to.linear());
+  Vector6d variance;
+  variance << Eigen::Vector3d::Constant(sigma_m * sigma_m), Eigen::Vector3d::Constant(sigma_rad * sigma_rad);
+  return variance.asDiagonal();
+}
+
+void WindowAdjustment::solve(const AdjustmentProblem& problem, AdjustmentResult& result) {
+  result.usable = false;
+  result.message.clear();
+  result.T_odom_left.clear();
+  for (const AdjustmentKeyFrame& frame : problem.key_frames) result.T_odom_left.push_back(frame.T_odom_left);
+  result.landmarks_odom = problem.landmarks_odom;
+  result.inlier.assign(problem.observations.size(), 0);
+  result.inliers = 0;
+  result.landmark_covariance.assign(problem.landmarks_odom.size(), Eigen::Matrix3d::Zero());
+  result.motion_covariance.assign(problem.key_frames.size(), Matrix6d::Zero());
+  result.variance_factor = result.cost_before = result.cost_after = 0;
+  result.iterations = 0;
+
+  if (!prepare(problem, result.message)) return;
+  if (!minimise(problem, result)) return;
+  if (!uncertainty(problem, result)) return;
+  judge_observations(result);
+  result.T_odom_left = T_odom_left_;
+  result.landmarks_odom = p_odom_;
+  result.usable = true;
+}
+
+bool WindowAdjustment::prepare(const AdjustmentProblem& problem, std::string& message) {
+  unknown_.clear();
+  unknowns_ = 0;
+  T_odom_left_.clear();
+  for (const AdjustmentKeyFrame& frame : problem.key_frames) {
+    T_odom_left_.push_back(frame.T_odom_left);
+    unknown_.push_back(frame.fixed ? -1 : static_cast<int>(unknowns_));
+    if (!frame.fixed) unknowns_ += 6;
+  }
+  p_odom_ = problem.landmarks_odom;
+  if (unknowns_ == 0) {
+    message = problem.key_frames.empty() ? "no key frame" : "every key frame is fixed";
+    return false;
+  }
+  if (unknowns_ == 6 * static_cast<Eigen::Index>(unknown_.size())) {
+    message = "no key frame is fixed";
+    return false;
+  }
+  for (size_t i = 0; i < problem.motions.size(); ++i) {
+    const int from = problem.motions[i].from, to = problem.motions[i].to,
+              frames = static_cast<int>(unknown_.size());
+    if (from >= 0 && from < frames && to >= 0 && to < frames && from != to) continue;
+    message = fmt::format("motion {} leads from key frame {} to key frame {} of {}", i, from, to, frames);
+    return false;
+  }
+  if (!sort_observations(problem, message) || !connected(problem, message)) return false;
+
+  const size_t observations = observations_.size(), landmarks = p_odom_.size();
+  weight_.resize(observations);
+  s_.resize(observations);
+  gain_.resize(observations);
+  determined_.assign(landmarks, 1);
+  inverse_ll_.resize(landmarks);
+  own_step_.resize(landmarks);
+  terms_.resize(unknown_.size());
+  if (H_.rows() < unknowns_) {
+    H_.resize(unknowns_, unknowns_);
+    noise_.resize(unknowns_, unknowns_);
+    covariance_.resize(unknowns_, unknowns_);
+    g_.resize(unknowns_);
+    diagonal_.resize(unknowns_);
+  }
+  return true;
+}
+
+bool WindowAdjustment::sort_observations(const AdjustmentProblem& problem, std::string& message) {
+  const int frames = static_cast<int>(problem.key_frames.size());
+  const int landmarks = static_cast<int>(problem.landmarks_odom.size());
+  observations_.clear();
+  first_.assign(static_cast<size_t>(landmarks) + 1, 0);
+  for (size_t i = 0; i < problem.observations.size(); ++i) {
+    const AdjustmentObservation& in = problem.observations[i];
+    if (in.key_frame < 0 || in.key_frame >= frames || in.landmark < 0 || in.landmark >= landmarks) {
+      message = fmt::format("observation {} names key frame {} of {}, landmark {} of {}", i, in.key_frame,
+                            frames, in.landmark, landmarks);
+      return false;
+    }
+    if (!(in.sigma_px > 0) || !in.uvu_px.allFinite()) {
+      message = fmt::format("observation {} has a sigma of {} px at ({}, {}, {})", i, in.sigma_px,
+                            in.uvu_px.x(), in.uvu_px.y(), in.uvu_px.z());
+      return false;
+    }
+    observations_.push_back({in.uvu_px, in.sigma_px, in.landmark, in.key_frame,
+                             unknown_[static_cast<size_t>(in.key_frame)], static_cast<int>(i)});
+    ++first_[static_cast<size_t>(in.landmark) + 1];
+  }
+  for (size_t j = 1; j < first_.size(); ++j) first_[j] += first_[j - 1];
+  const auto order = [](const Observation& o) { return std::pair(o.landmark, o.key_frame); };
+  std::sort(observations_.begin(), observations_.end(),
+            [&](const Observation& a, const Observation& b) { return order(a) < order(b); });
+  for (size_t n = 1; n < observations_.size(); ++n) {
+    if (order(observations_[n - 1]) != order(observations_[n])) continue;
+    message = fmt::format("landmark {} is observed twice in key frame {}", observations_[n].landmark,
+                          observations_[n].key_frame);
+    return false;
+  }
+  return true;
+}
+
+bool WindowAdjustment::connected(const AdjustmentProblem& problem, std::string& message) const {
+  for (size_t k = 0; k < unknown_.size(); ++k) {
+    if (unknown_[k] < 0) continue;
+    const int frame = static_cast<int>(k);
+    const auto shares = [&](const Observation& o) {
+      const auto j = static_cast<size_t>(o.landmark);
+      return o.key_frame == frame && first_[j + 1] - first_[j] > 1;
+    };
+    const auto moves = [&](const MotionPrior& m) { return m.from == frame || m.to == frame; };
+    if (std::any_of(observations_.begin(), observations_.end(), shares)) continue;
+    if (std::any_of(problem.motions.begin(), problem.motions.end(), moves)) continue;
+    message = fmt::format("key frame {} shares no landmark with another", k);
+    return false;
+  }
+  return true;
+}
+
+bool WindowAdjustment::minimise(const AdjustmentProblem& problem, AdjustmentResult& result) {
+  double damping = kFirstDamping;
+  double cost = linearise(problem, damping);
+  result.cost_before = cost;
+  for (; result.iterations < options_.max_iterations && damping < kMostDamping; ++result.iterations) {
+    T_kept_ = T_odom_left_;
+    p_kept_ = p_odom_;
+    if (!step()) {
+      result.message = "the observations do not determine the key frames";
+      return false;
+    }
+    const double next_damping = std::max(0.1 * damping, kLeastDamping);
+    const double next_cost = linearise(problem, next_damping);
+    if (next_cost <= cost) {
+      const bool converged = cost - next_cost <= kConverged * cost;
+      cost = next_cost;
+      damping = next_damping;
+      if (converged) break;
+    } else {
+      T_odom_left_ = T_kept_;
+      p_odom_ = p_kept_;
+      damping *= 100;
+      linearise(problem, damping);
+    }
+  }
+  for (Pose& T : T_odom_left_) T = renormalised(T);
+  result.cost_after = cost;
+  return true;
+}
+
+double WindowAdjustment::linearise(const AdjustmentProblem& problem, double damping) {
+  clear_equations();
+  double cost = 0;
+  for (size_t j = 0; j < p_odom_.size(); ++j) cost += eliminate(j, damping);
+  cost += add_priors(problem);
+  H_.diagonal().head(unknowns_) += damping * diagonal_.head(unknowns_);
+  return cost;
+}
+
+void WindowAdjustment::clear_equations() {
+  H_.topLeftCorner(unknowns_, unknowns_).setZero();
+  g_.setZero();
+  diagonal_.setZero();
+}
+
+double WindowAdjustment::add_priors(const AdjustmentProblem& problem) {
+  double cost = 0;
+  for (const MotionPrior& motion : problem.motions) cost += add_motion(motion);
+  for (size_t k = 0; k < unknown_.size(); ++k) cost += add_plane(problem.plane, k);
+  return cost;
+}
+
+double WindowAdjustment::eliminate(size_t landmark, double damping) {
+  const double k2 = options_.lorentz_scale * options_.lorentz_scale;
+  const size_t begin = first_[landmark], end = first_[landmark + 1];
+  double cost = 0;
+  Eigen::Matrix3d H_ll = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d g_l = Eigen::Vector3d::Zero();
+  for (size_t n = begin; n < end; ++n) {
+    const Observation& o = observations_[n];
+    ObservationTerms& t = terms_[n - begin];
+    observation_terms(rig_, T_odom_left_[static_cast<size_t>(o.key_frame)], p_odom_[landmark], o.uvu_px,
+                      o.sigma_px, t);
+    s_[n] = t.s;
+    weight_[n] = 1 / (1 + t.s / k2);  // of k^2 log(1 + s / k^2), as its derivative by s
+    cost += k2 * std::log1p(t.s / k2);
+    H_ll += weight_[n] * t.H_ll;
+    g_l += weight_[n] * t.g_l;
+  }
+  H_ll.diagonal() *= 1 + damping;
+  own_step_[landmark].setZero();
+  if (!determined_[landmark] || !invert(H_ll, inverse_ll_[landmark])) {
+    determined_[landmark] = 0;  // from now on it stays where it is and has no say
+    inverse_ll_[landmark].setZero();
+    for (size_t n = begin; n < end; ++n) gain_[n].setZero();
+    return 0;
+  }
+  own_step_[landmark] = inverse_ll_[landmark] * g_l;
+  for (size_t n = begin; n < end; ++n) {
+    const int row = observations_[n].unknown;
+    if (row < 0) continue;
+    ObservationTerms& t = terms_[n - begin];
+    t.H_xl *= weight_[n];
+    gain_[n].noalias() = t.H_xl * inverse_ll_[landmark];
+    H_.block<6, 6>(row, row) += weight_[n] * t.H_xx;
+    diagonal_.segment<6>(row) += weight_[n] * t.H_xx.diagonal();
+    g_.segment<6>(row) += weight_[n] * t.g_x - gain_[n] * g_l;
+    for (size_t m = begin; m <= n; ++m) {
+      const int column = observations_[m].unknown;
+      if (column >= 0) H_.block<6, 6>(row, column).noalias() -= t.H_xl * gain_[m].transpose();
+    }
+  }
+  return cost;
+}
+
+double WindowAdjustment::add_motion(const MotionPrior& motion) {
+  const auto from = static_cast<size_t>(motion.from), to = static_cast<size_t>(motion.to);
+  const RelativePoseError e = relative_pose_error(T_odom_left_[from], T_odom_left_[to], motion.T_from_to);
+  const Matrix6d information = motion.covariance.llt().solve(Matrix6d::Identity());
+  const int row[2] = {unknown_[from], unknown_[to]};
+  const Matrix6d* const J[2] = {&e.J_from, &e.J_to};
+  for (int a = 0; a < 2; ++a) {
+    if (row[a] < 0) continue;
+    const Matrix6d JtW = J[a]->transpose() * information;
+    g_.segment<6>(row[a]) -= JtW * e.error;
+    for (int b = 0; b < 2; ++b) {
+      if (row[b] < 0 || row[b] > row[a]) continue;
+      const Matrix6d H = JtW * *J[b];
+      H_.block<6, 6>(row[a], row[b]) += H;
+      if (a == b) diagonal_.segment<6>(row[a]) += H.diagonal();
+    }
+  }
+  return e.error.dot(information * e.error);
+}
+
+double WindowAdjustment::add_plane(const GroundPlane& plane, size_t key_frame) {
+  const int row = unknown_[key_frame];
+  if (row < 0) return 0;
+  const Pose& T_odom_left = T_odom_left_[key_frame];
+  const Pose T_left_body = rig_.T_body_left.inverse();
+  const Eigen::Vector3d normal_left = T_odom_left.linear().transpose() * plane.normal_odom;
+  const auto add = [&](const Vector6d& J, double error, double sigma) {
+    const double information = 1 / (sigma * sigma);
+    const Matrix6d H = information * J * J.transpose();
+    H_.block<6, 6>(row, row) += H;
+    diagonal_.segment<6>(row) += H.diagonal();
+    g_.segment<6>(row) -= information * error * J;
+    return information * error * error;
+  };
+  double cost = 0;
+  if (options_.planar_height_sigma_m > 0) {
+    const Eigen::Vector3d p_left = T_left_body.translation();  // the body's origin
+    Vector6d J;
+    J << normal_left, p_left.cross(normal_left);
+    cost +=
+        add(J, plane.normal_odom.dot(T_odom_left * p_left) - plane.offset_m, options_.planar_height_sigma_m);
+  }
+  if (options_.planar_tilt_sigma_deg > 0) {
+    // The normal seen from the body is (-pitch, roll, 1) for small angles: x and y of it should be zero.
+    for (int axis = 0; axis < 2; ++axis) {
+      const Eigen::Vector3d axis_left = T_left_body.linear().col(axis);
+      Vector6d J;
+      J << Eigen::Vector3d::Zero(), axis_left.cross(normal_left);
+      cost += add(J, axis_left.dot(normal_left), options_.planar_tilt_sigma_deg * std::numbers::pi / 180);
+    }
+  }
+  return cost;
+}
+
+bool WindowAdjustment::step() {
+  Eigen::Ref<Eigen::MatrixXd> H = H_.topLeftCorner(unknowns_, unknowns_);
+  const LowerFactor llt(H);
+  if (llt.info() != Eigen::Success) return false;
+  Eigen::Ref<Eigen::VectorXd> x = g_.head(unknowns_);
+  llt.solveInPlace(x);
+  if (!x.allFinite()) return false;
+  for (size_t k = 0; k < unknown_.size(); ++k) {
+    if (unknown_[k] >= 0) T_odom_left_[k] = T_odom_left_[k] * se3_exp(x.segment<6>(unknown_[k]));
+  }
+  for (size_t j = 0; j < p_odom_.size(); ++j) {
+    Eigen::Vector3d move = own_step_[j];
+    for (size_t n = first_[j]; n < first_[j + 1]; ++n) {
+      const int row = observations_[n].unknown;
+      if (row >= 0) move.noalias() -= gain_[n].transpose() * x.segment<6>(row);
+    }
+    p_odom_[j] += move;
+  }
+  return true;
+}
+
+/// The estimate follows the noise as x = H^-1 J^T W noise, with the robust weights W as they came out: its
+/// covariance is H^-1 (J^T W^2 J) H^-1, reduced to the poses like H itself. H^-1 alone would be half as large
+/// again at a scale of 2: it takes the weights for less precise measurements. That the weights follow the
+/// noise of few landmarks is accounted for by Huber's factor.
+bool WindowAdjustment::uncertainty(const AdjustmentProblem& problem, AdjustmentResult& result) {
+  auto noise = noise_.topLeftCorner(unknowns_, unknowns_);
+  auto covariance = covariance_.topLeftCorner(unknowns_, unknowns_);
+  clear_equations();
+  add_priors(problem);
+  covariance = H_.topLeftCorner(unknowns_, unknowns_);  // kept here: a prior has no weight
+  noise.setZero();
+  for (size_t j = 0; j < p_odom_.size(); ++j) {
+    eliminate(j, 0);
+    add_noise(j, result.landmark_covariance[j]);
+  }
+  Eigen::Ref<Eigen::MatrixXd> H = H_.topLeftCorner(unknowns_, unknowns_);
+  const LowerFactor llt(H);
+  if (llt.info() != Eigen::Success || !regular(H, diagonal_.head(unknowns_))) {
+    result.message = "the observations do not determine the key frames";
+    return false;
+  }
+  noise = small_sample_factor() * noise + covariance;
+  noise.triangularView<Eigen::StrictlyUpper>() = noise.transpose();
+  llt.solveInPlace(noise);
+  covariance = noise.transpose();
+  llt.solveInPlace(covariance);
+  motion_covariances(result);
+  return true;
+}
+
+/// (1 + p / n var(psi') / E(psi')^2)^2 for p unknowns, n residuals and psi' the slope of the influence of a
+/// residual (Huber, Robust Statistics, 1981, section 7.6). The slope of w r is w across r and w (2 w - 1)
+/// along it.
+double WindowAdjustment::small_sample_factor() const {
+  double slope = 0, slope2 = 0, residuals = 0;
+  for (size_t j = 0; j < p_odom_.size(); ++j) {
+    const size_t seen = first_[j + 1] - first_[j];
+    if (seen < 2) continue;
+    residuals += 3 * static_cast<double>(seen - 1);  // one observation's worth fixes the landmark
+    for (size_t n = first_[j]; n < first_[j + 1]; ++n) {
+      const double along = 2 * weight_[n] - 1,
+                   share = static_cast<double>(seen - 1) / static_cast<double>(seen);
+      slope += share * weight_[n] * (2 + along);
+      slope2 += share * weight_[n] * weight_[n] * (2 + along * along);
+    }
+  }
+  if (!(slope > 0)) return 1;
+  const double variation = residuals * slope2 / (slope * slope) - 1;
+  const double factor = 1 + static_cast<double>(unknowns_) / residuals * variation;
+  return factor * factor;
+}
+
+void WindowAdjustment::add_noise(size_t landmark, Eigen::Matrix3d& covariance) {
+  const size_t begin = first_[landmark], end = first_[landmark + 1];
+  Eigen::Matrix3d noise_ll = Eigen::Matrix3d::Zero();
+  const double gate = options_.outlier_sigmas * options_.outlier_sigmas;
+  const auto gain2 = [&](size_t n) {  // an outlier's noise is not the stated one, but its misfit
+    return weight_[n] * weight_[n] * (s_[n] > gate ? s_[n] / 3 : 1);
+  };
+  for (size_t n = begin; n < end; ++n) noise_ll += gain2(n) * terms_[n - begin].H_ll;
+  covariance = inverse_ll_[landmark] * noise_ll * inverse_ll_[landmark];
+  for (size_t n = begin; n < end; ++n) {
+    const int row = observations_[n].unknown;
+    if (row < 0) continue;
+    // Of the gradients g_x - gain g_l of two key frames; eliminate() left H_xl with its weight.
+    const Matrix63d cross = gain2(n) / weight_[n] * terms_[n - begin].H_xl;
+    const Matrix63d rest = cross - gain_[n] * noise_ll;
+    noise_.block<6, 6>(row, row) += gain2(n) * terms_[n - begin].H_xx;
+    for (size_t m = begin; m <= n; ++m) {
+      const int column = observations_[m].unknown;
+      if (column < 0) continue;
+      noise_.block<6, 6>(row, column) -=
+          rest * gain_[m].transpose() +
+          gain_[n] * (gain2(m) / weight_[m] * terms_[m - begin].H_xl).transpose();
+    }
+  }
+}
+
+void WindowAdjustment::motion_covariances(AdjustmentResult& result) const {
+  const auto block = [&](int row, int column) -> Matrix6d {
+    if (row < 0 || column < 0) return Matrix6d::Zero();
+    return covariance_.block<6, 6>(row, column);
+  };
+  for (size_t k = 1; k < unknown_.size(); ++k) {
+    const int a = unknown_[k - 1], b = unknown_[k];
+    if (a < 0 && b < 0) continue;
+    const Pose T_a_b = T_odom_left_[k - 1].inverse() * T_odom_left_[k];
+    result.motion_covariance[k] = relative_pose_covariance(T_a_b, block(a, a), block(a, b), block(b, b));
+  }
+}
+
+void WindowAdjustment::judge_observations(AdjustmentResult& result) {
+  // Part of the noise goes into the landmark, one of its observations' worth, and a little into the poses.
+  scratch_.clear();
+  size_t spare = 0;
+  for (size_t j = 0; j < p_odom_.size(); ++j) {
+    const size_t seen = first_[j + 1] - first_[j];
+    for (size_t n = first_[j]; n < first_[j + 1]; ++n) {
+      const bool agrees = s_[n] <= options_.outlier_sigmas * options_.outlier_sigmas;
+      result.inlier[static_cast<size_t>(observations_[n].input)] = agrees ? 1 : 0;
+      result.inliers += agrees ? 1 : 0;
+      if (seen > 1) scratch_.push_back(s_[n] * static_cast<double>(seen) / static_cast<double>(seen - 1));
+    }
+    spare += seen > 1 ? 3 * (seen - 1) : 0;
+  }
+  if (scratch_.empty() || spare <= static_cast<size_t>(unknowns_)) return;
+  const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
+  std::nth_element(scratch_.begin(), middle, scratch_.end());
+  const double left = 1 - static_cast<double>(unknowns_) / static_cast<double>(spare);
+  result.variance_factor = *middle / (kChi2Median3 * left);
+}
+
+}  // namespace groundloop::slam
