@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "bench/runner/slam_options.h"
+#include "sim/generate/realize.h"
 #include "sim/head/head.h"
 #include "sim/scenario/scenario.h"
 #include "sim/simulation/simulation.h"
@@ -26,7 +27,7 @@ auto attempt(std::vector<Problem>& problems, Make make) -> std::optional<decltyp
 
 std::vector<Problem> problems_of_scenario(const std::string& file) {
   std::vector<Problem> problems;
-  const auto scenario = attempt(problems, [&] { return sim::load_scenario(file); });
+  const auto scenario = attempt(problems, [&] { return sim::realized(sim::load_scenario(file)); });
   if (!scenario) return problems;
   attempt(problems, [&] { return slam_options(*scenario); });
   const auto head = attempt(problems, [&] { return sim::load_head(scenario->head.model); });

@@ -7,9 +7,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "bench/cli/arguments.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/scenario_check.h"
 #include "bench/runner/preview.h"
+#include "bench/runner/scenario_export.h"
 #include "bench/verdict/verdict.h"
 #include "sim/scenario/scenario.h"
 
@@ -103,9 +105,24 @@ void add_preview_command(CLI::App& app, CommandAction& action) {
   const auto out = std::make_shared<std::string>();
   command->add_option("scenario", *file, "scenario file")->required()->type_name("FILE");
   command->add_option("--out", *out, "picture to write (default: NAME.png)")->type_name("PNG");
+  const auto folder = std::make_shared<std::string>();
+  command->add_option("--export", *folder, "write what is generated into a folder, to be edited, in place of a picture")
+      ->type_name("DIR");
+  const auto set = std::make_shared<std::vector<std::string>>();
+  command->add_option("--set", *set, "change a key of the scenario")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->allow_extra_args(false);
   command->callback([=, &action] {
     action = [=] {
-      fmt::print("{}\n", preview(sim::load_scenario(*file), *out));
+      std::vector<sim::Override> overrides;
+      for (const std::string& text : *set) overrides.push_back(parse_override(text));
+      const sim::Scenario scenario = sim::load_scenario(*file, overrides);
+      if (folder->empty()) {
+        fmt::print("{}\n", preview(scenario, *out));
+      } else {
+        for (const std::string& written : export_scenario(scenario, *folder)) fmt::print("{}\n", written);
+      }
       return exit_code(Outcome::kPass);
     };
   });

@@ -4,6 +4,7 @@
 
 #include "bench/report/preview.h"
 #include "bench/runner/exact_scene.h"
+#include "sim/generate/realize.h"
 #include "sim/head/head.h"
 #include "slam/mapping/atomic_file.h"
 
@@ -28,7 +29,8 @@ cv::Mat preview_picture(const sim::TruthWorld& world, const sim::Simulation& sim
   return draw_preview(scene_outline(world), path, path.front());
 }
 
-std::string preview(const sim::Scenario& scenario, const std::string& file) {
+std::string preview(const sim::Scenario& asked, const std::string& file) {
+  const sim::Scenario scenario = sim::realized(asked);
   const sim::HeadModel head = sim::load_head(scenario.head.model);
   const sim::World world = sim::World::load(scenario);
   const sim::Simulation simulation(world, head, scenario);

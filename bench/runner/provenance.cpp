@@ -6,13 +6,14 @@
 
 #include <array>
 #include <fstream>
+#include <sstream>
 #include <memory>
 
 namespace groundloop::bench {
 
-std::string sha256_of_file(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return {};
+namespace {
+
+std::string sha256_of_stream(std::istream& in) {
   const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), EVP_MD_CTX_free);
   EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr);
   std::array<char, 65536> block;
@@ -25,6 +26,18 @@ std::string sha256_of_file(const std::string& file) {
   std::string text;
   for (unsigned int i = 0; i < length; ++i) text += fmt::format("{:02x}", digest[i]);
   return text;
+}
+
+}  // namespace
+
+std::string sha256_of_file(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return in ? sha256_of_stream(in) : "";
+}
+
+std::string sha256_of_text(const std::string& text) {
+  std::istringstream in(text);
+  return sha256_of_stream(in);
 }
 
 std::string instruction_set() {

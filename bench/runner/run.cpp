@@ -29,6 +29,7 @@
 #include "bench/runner/simulated_source.h"
 #include "bench/runner/slam_options.h"
 #include "bench/runner/timing_metrics.h"
+#include "sim/generate/realize.h"
 #include "sim/truth/truth_world.h"
 #include "slam/mapping/atomic_file.h"
 #include "slam/mapping/map_io.h"
@@ -115,6 +116,12 @@ void write_truth(const OutputFolder& out, const ExactMap& exact, const sim::Trut
   write_outline_json(out.file("outline.json"), scene_outline(world));
 }
 
+/// Of its file, or of what is generated.
+std::string sha256_of_world(const sim::Scenario& scenario) {
+  const auto generated = sim::generated_text(scenario);
+  return generated ? sha256_of_text(*generated) : sha256_of_file(scenario.world.file);
+}
+
 RunHeader header_of(const sim::Scenario& scenario, const Metrics& metrics, const Verdict& verdict,
                     const sim::RendererInfo& renderer) {
   RunHeader header = run_header(verdict);
@@ -128,7 +135,7 @@ RunHeader header_of(const sim::Scenario& scenario, const Metrics& metrics, const
                      {"version", renderer.version},
                      {"samples", std::to_string(renderer.samples)}};
   header.hashes = {{"scenario", sha256_of_file(scenario.file)},
-                   {"world", sha256_of_file(scenario.world)},
+                   {"world", sha256_of_world(scenario)},
                    {"robot", sha256_of_file(scenario.robot.model)},
                    {"head", sha256_of_file(scenario.head.model)}};
   header.judged = judged_metrics(scenario.expect, metrics, verdict);
@@ -137,9 +144,10 @@ RunHeader header_of(const sim::Scenario& scenario, const Metrics& metrics, const
 
 }  // namespace
 
-RunOutcome run_scenario(const sim::Scenario& scenario, std::optional<int64_t> frames,
+RunOutcome run_scenario(const sim::Scenario& asked, std::optional<int64_t> frames,
                         const std::string& folder, const JobControl& control) {
   const Clock::time_point start = Clock::now();
+  const sim::Scenario scenario = sim::realized(asked);
   const slam::SlamOptions options = slam_options(scenario);
   const sim::HeadModel head = sim::load_head(scenario.head.model);
   const sim::World world = sim::World::load(scenario);

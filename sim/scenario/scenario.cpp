@@ -116,16 +116,16 @@ void apply_override(const Override& override_, Scenario& scenario, std::vector<P
   for (size_t i = first_own; i < problems.size(); ++i) problems[i].line = 0;
 }
 
-/// Makes a path absolute, relative to the scenario's folder; it must be an existing file.
+/// Makes a path absolute, relative to the scenario's folder; it must be an existing file (or folder).
 void resolve(std::string& path, const std::string& key, const YAML::Node& node, const Scenario& scenario,
-             const std::vector<Override>& overrides, const std::string& wanted,
-             std::vector<Problem>& problems) {
+             const std::vector<Override>& overrides, const std::string& wanted, std::vector<Problem>& problems,
+             bool is_folder = false) {
   namespace fs = std::filesystem;
   if (path.empty()) return;  // reported as missing already
   const fs::path folder = fs::absolute(scenario.file).parent_path();
   const fs::path resolved = (folder / path).lexically_normal();
   std::error_code error;
-  if (!fs::is_regular_file(resolved, error)) {
+  if (is_folder ? !fs::is_directory(resolved, error) : !fs::is_regular_file(resolved, error)) {
     const bool typed =
         std::any_of(overrides.begin(), overrides.end(), [&](const Override& o) { return o.key == key; });
     const std::string file = typed ? kCommandLine : scenario.file;
@@ -133,6 +133,17 @@ void resolve(std::string& path, const std::string& key, const YAML::Node& node, 
                         fmt::format("{} that exists (looked for {})", wanted, resolved.string())});
   }
   path = resolved.string();
+}
+
+void resolve_world(Scenario& scenario, const YAML::Node& node, const std::vector<Override>& overrides,
+                   std::vector<Problem>& problems) {
+  if (scenario.world.generate) {
+    resolve(scenario.world.generate->textures, "world.generate.textures", node, scenario, overrides,
+            "a folder of the house's textures (models/generated, made by the build)", problems, true);
+  }
+  const bool bare = node.IsDefined() && node.IsScalar();
+  resolve(scenario.world.file, bare ? "world" : "world.file", bare || !node.IsMap() ? node : node["file"],
+          scenario, overrides, "an MJCF file", problems);
 }
 
 /// In the file's order, the command line's last; what both a file and an override complain of once.
@@ -154,6 +165,10 @@ std::vector<Problem> tidied(std::vector<Problem> problems) {
 
 }  // namespace
 
+void WorldChoice::check(ConfigReader& reader) const {
+  if (file.empty() != generate.has_value()) reader.problem("", "exactly one of: file, generate");
+}
+
 void Segment::check(ConfigReader& reader) const {
   const int members = straight_m.has_value() + arc.has_value() + stop_s.has_value() + look.has_value();
   if (members != 1) reader.problem("", "exactly one of: straight_m, arc, stop_s, look");
@@ -161,7 +176,14 @@ void Segment::check(ConfigReader& reader) const {
 }
 
 void Plan::check(ConfigReader& reader) const {
-  if (reader.has("segments") && segments.empty()) reader.problem("segments", "at least one segment");
+  if (generate && !segments.empty()) reader.problem("generate", "either segments or generate, not both");
+  if (!generate && segments.empty()) {
+    if (reader.has("segments")) {
+      reader.problem("segments", "at least one segment");
+    } else {
+      reader.problem("segments", "missing", "a list, or `generate` in its place");
+    }
+  }
   if (feedback == Feedback::kSlam) {
     reader.problem("feedback", "one of: plan, odometry, truth (steering by SLAM is not supported yet)");
   }
@@ -205,7 +227,7 @@ Scenario load_scenario(const std::string& file, const std::vector<Override>& ove
 
   for (const Override& override_ : overrides) apply_override(override_, scenario, problems);
 
-  resolve(scenario.world, "world", root["world"], scenario, overrides, "an MJCF file", problems);
+  resolve_world(scenario, root["world"], overrides, problems);
   resolve(scenario.robot.model, "robot.model", root["robot"]["model"], scenario, overrides, "an MJCF file",
           problems);
   resolve(scenario.head.model, "head.model", root["head"]["model"], scenario, overrides, "a head's YAML file",
@@ -213,6 +235,10 @@ Scenario load_scenario(const std::string& file, const std::vector<Override>& ove
   for (size_t i = 0; i < scenario.people.size(); ++i) {
     resolve(scenario.people[i].model, fmt::format("people[{}].model", i), root["people"][i]["model"],
             scenario, overrides, "an MJCF file", problems);
+  }
+  if (scenario.plan.generate && scenario.robot.start.line != 0) {
+    problems.push_back({file, scenario.robot.start.line, "robot.start", "given",
+                        "no start: it is chosen by plan.generate"});
   }
   if (!problems.empty()) throw InputError(tidied(std::move(problems)));
   return scenario;

@@ -11,6 +11,7 @@
 #include "sim/scenario/fault.h"
 #include "sim/scenario/metric_names.h"
 #include "sim/scenario/scenery.h"
+#include "sim/scenario/recipe.h"
 #include "slam/types/config.h"
 
 namespace groundloop::sim {
@@ -48,6 +49,21 @@ struct OdometryModel {
     a("noise_m_per_sqrt_m", noise_m_per_sqrt_m,
       {.min = 0, .max = 1, .doc = "standard deviation of a wheel's path after one metre"});
   }
+};
+
+/// `world:` one MJCF file, or a recipe to generate it by.
+struct WorldChoice {
+  std::string file;  ///< MJCF file, relative to the scenario file
+  std::optional<WorldRecipe> generate;
+
+  std::string& short_form() { return file; }
+
+  template <class Archive>
+  void visit(Archive& a) {
+    a("file", file, {.doc = "MJCF file of the scene, relative to this file"});
+    a("generate", generate, {.doc = "a furnished building drawn from a seed"});
+  }
+  void check(ConfigReader& reader) const;
 };
 
 struct RobotChoice {
@@ -119,6 +135,7 @@ struct Plan {
   double speed_mps = 0.2;
   double turn_rate_limit_degps = 30;  ///< arcs slow down so that the heading never turns faster
   std::vector<Segment> segments;
+  std::optional<PlanRecipe> generate;  ///< in place of segments, until they are made (sim/generate)
 
   template <class Archive>
   void visit(Archive& a) {
@@ -126,7 +143,8 @@ struct Plan {
     a("speed_mps", speed_mps, {.min = 0.01, .max = 1.2, .required = true});
     a("turn_rate_limit_degps", turn_rate_limit_degps,
       {.min = 1, .max = 300, .doc = "arcs slow down so that the heading never turns faster"});
-    a("segments", segments, {.required = true, .doc = "driven one after the other"});
+    a("segments", segments, {.doc = "driven one after the other"});
+    a("generate", generate, {.doc = "straights and arcs through the world, drawn from a seed"});
   }
   void check(ConfigReader& reader) const;
 };
@@ -195,7 +213,7 @@ struct Scenario {
   int format = 1;
   std::string name;
   std::string summary;
-  std::string world;
+  WorldChoice world;
   RobotChoice robot;
   HeadChoice head;
   Plan plan;
@@ -216,7 +234,7 @@ struct Scenario {
     a("name", name,
       {.required = true, .doc = "letters, digits, dot, dash, underscore: it names the run folder"});
     a("summary", summary, {.doc = "one line for lists and reports"});
-    a("world", world, {.required = true, .doc = "MJCF file of the scene, relative to this file"});
+    a("world", world, {.required = true, .doc = "the scene: an MJCF file, relative to this file, or {generate: ..}"});
     a("robot", robot, {.required = true});
     a("head", head, {.required = true});
     a("plan", plan, {.required = true});

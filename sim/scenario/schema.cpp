@@ -45,6 +45,8 @@ class SchemaWriter {
       return {{"type", "array"}, {"items", without_default(describe(typename T::value_type{}, field))}};
     } else if constexpr (config_detail::IsStringMap<T>::value) {
       return {{"type", "object"}, {"additionalProperties", scalar()}};
+    } else if constexpr (HasShortForm<T>) {
+      return {{"anyOf", Json::array({{{"type", "string"}}, object(value)})}};
     } else if constexpr (Describable<T>) {
       return object(value);
     } else if constexpr (std::is_enum_v<T>) {

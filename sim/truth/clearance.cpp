@@ -4,6 +4,8 @@
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "sim/truth/bullet.h"
@@ -56,6 +58,19 @@ Support swept(Support body, double margin_m, double z_min_m, double z_max_m) {
   };
 }
 
+/// Farthest horizontal distance of a body from a point; exact to 1 mm in a metre for round bodies.
+double radius_about(const Vector3d& centre, const Solid& solid, const slam::Pose& T_world_solid) {
+  constexpr int kDirections = 72;
+  double radius_m = 0;
+  for (int i = 0; i < kDirections; ++i) {
+    const double angle_rad = 2 * std::numbers::pi * i / kDirections;
+    const Vector3d direction(std::cos(angle_rad), std::sin(angle_rad), 0);
+    const Vector3d p = T_world_solid * solid.support(T_world_solid.linear().transpose() * direction);
+    radius_m = std::max(radius_m, (p - centre).head<2>().norm());
+  }
+  return radius_m;
+}
+
 AlignedBox3d extent_of(const Support& body) {
   AlignedBox3d extent;
   for (int axis = 0; axis < 3; ++axis) {
@@ -95,6 +110,7 @@ RobotFootprint::RobotFootprint(const mjModel& model, int robot_body) {
     const Vector3d top =
         T_world_geom * part.solid->support(T_world_geom.linear().transpose() * Vector3d::UnitZ());
     z_max_m_ = std::max(z_max_m_, top.z());
+    radius_m_ = std::max(radius_m_, radius_about(T_world_body.translation(), *part.solid, T_world_geom));
     parts_.push_back(std::move(part));
   }
 }

@@ -19,6 +19,9 @@ class RobotFootprint {
   const SceneGeom* collision(const SceneTree& scene, double x_m, double y_m, double yaw_rad,
                              double margin_m) const;
 
+  /// Of the circle about the body's origin that holds the footprint.
+  double radius_m() const { return radius_m_; }
+
  private:
   struct Part {
     std::unique_ptr<Solid> solid;
@@ -27,6 +30,7 @@ class RobotFootprint {
   std::vector<Part> parts_;
   double z_min_m_ = 0;  ///< world heights of the sweep
   double z_max_m_ = 0;
+  double radius_m_ = 0;
 };
 
 }  // namespace groundloop::sim

@@ -251,6 +251,8 @@ std::optional<std::string> TruthWorld::collision(double x_m, double y_m, double 
   return geom->name;
 }
 
+double TruthWorld::robot_radius_m() const { return impl_->robot.radius_m(); }
+
 std::vector<Outline> TruthWorld::footprints(double z_min_m, double z_max_m) const {
   std::vector<Outline> outlines;
   for (const SceneGeom& geom : impl_->scene.geoms()) {

@@ -97,6 +97,9 @@ class TruthWorld {
   /// count.
   std::optional<std::string> collision(double x_m, double y_m, double yaw_rad, double margin_m) const;
 
+  /// Radius of the circle about the origin of the robot's body that holds all of it at any heading; 0 without one.
+  double robot_radius_m() const;
+
   /// Outlines of the bounded geoms that reach into the band between two heights, in the order of geom ids;
   /// curved ones as polygons of up to 64 corners.
   std::vector<Outline> footprints(double z_min_m, double z_max_m) const;

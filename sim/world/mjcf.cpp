@@ -19,7 +19,17 @@ class Reader {
 
   MjcfElement read(const std::string& file) {
     tinyxml2::XMLDocument document;
-    const tinyxml2::XMLElement* root = open(file, document);
+    return read(open(file, document), file);
+  }
+
+  MjcfElement read_text(const std::string& text, const std::string& name) {
+    tinyxml2::XMLDocument document;
+    document.Parse(text.data(), text.size());
+    return read(checked_root(document, name), name);
+  }
+
+ private:
+  MjcfElement read(const tinyxml2::XMLElement* root, const std::string& file) {
     if (std::string_view(root->Name()) != "mujoco") {
       throw InputError(
           Problem{file, root->GetLineNum(), fmt::format("<{}>", root->Name()), "", "an MJCF file, <mujoco>"});
@@ -29,11 +39,14 @@ class Reader {
     return element;
   }
 
- private:
   const tinyxml2::XMLElement* open(const std::string& file, tinyxml2::XMLDocument& document) {
     if (!fs::is_regular_file(file)) throw InputError(Problem{file, 0, "", "no such file", "an MJCF file"});
     files_.insert(fs::weakly_canonical(file).string());
     document.LoadFile(file.c_str());
+    return checked_root(document, file);
+  }
+
+  static const tinyxml2::XMLElement* checked_root(const tinyxml2::XMLDocument& document, const std::string& file) {
     if (document.Error()) {
       throw InputError(Problem{file, document.ErrorLineNum(), "",
                                tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()), "well-formed XML"});
@@ -204,6 +217,12 @@ Problem MjcfElement::problem(const std::string& value, const std::string& wanted
 MjcfElement read_mjcf(const std::string& file) {
   MjcfElement root = Reader(file).read(file);
   resolve_assets(root, fs::absolute(file).parent_path());
+  return root;
+}
+
+MjcfElement read_mjcf_text(const std::string& text, const std::string& name) {
+  MjcfElement root = Reader(name).read_text(text, name);
+  resolve_assets(root, fs::absolute(name).parent_path());
   return root;
 }
 

@@ -44,6 +44,9 @@ struct MjcfElement {
 /// @throws InputError naming file, line and element: unreadable XML, a missing include, all missing assets
 MjcfElement read_mjcf(const std::string& file);
 
+/// The same of a text in memory. @param name  in place of the file, for messages and relative paths
+MjcfElement read_mjcf_text(const std::string& text, const std::string& name);
+
 /// MJCF text with one element a line, so that a line number of MuJoCo's leads back to the user's file.
 struct MjcfText {
   std::string text;

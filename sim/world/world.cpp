@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "sim/world/compose.h"
+#include "sim/world/generate/generate.h"
 #include "sim/world/mjcf.h"
 #include "sim/world/people.h"
 
@@ -78,6 +79,16 @@ void prepare_for_cameras(mjModel& model) {
   model.vis.map.zfar = static_cast<float>(std::max(kFar_m / model.stat.extent, 3.0));
 }
 
+void strip_textures(MjcfElement& root) {
+  for (MjcfElement& section : root.children) {
+    if (section.tag != "asset") continue;
+    std::erase_if(section.children, [](const MjcfElement& asset) { return asset.tag == "texture"; });
+  }
+  MjcfElement::walk(root, [](MjcfElement& element) {
+    if (element.tag == "material") element.erase("texture");
+  });
+}
+
 }  // namespace
 
 World::World(ModelPtr model, int robot_body, std::vector<int> people, const StartPose& start)
@@ -85,11 +96,26 @@ World::World(ModelPtr model, int robot_body, std::vector<int> people, const Star
   prepare_for_cameras(*model_);
 }
 
-World World::load(const Scenario& scenario) {
-  MjcfElement world = read_mjcf(scenario.world);
+std::optional<std::string> generated_text(const Scenario& scenario) {
+  if (!scenario.world.generate) return std::nullopt;
+  return generated_world(*scenario.world.generate);
+}
+
+MjcfElement world_mjcf(const Scenario& scenario) {
+  const auto text = generated_text(scenario);
+  return text ? read_mjcf_text(*text, scenario.file + " (generated world)") : read_mjcf(scenario.world.file);
+}
+
+World World::load(const Scenario& scenario, Looks looks) {
+  MjcfElement world = world_mjcf(scenario);
   MjcfElement robot = read_mjcf(scenario.robot.model);
   std::vector<MjcfElement> people;
   for (const Person& person : scenario.people) people.push_back(read_person(person.model, person.name));
+  if (looks == Looks::kNone) {
+    strip_textures(world);
+    strip_textures(robot);
+    for (MjcfElement& person : people) strip_textures(person);
+  }
   const std::string body = robot_root_body(robot);
   ModelPtr model = compile(compose_mjcf(std::move(world), std::move(robot), std::move(people)));
   const auto body_id = [&](const std::string& name) {

@@ -3,12 +3,28 @@
 #include <mujoco/mujoco.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sim/scenario/scenario.h"
 
 namespace groundloop::sim {
+
+struct MjcfElement;
+
+/// MJCF text of the scenario's world when it is generated, else none.
+/// @pre the recipe has a seed
+std::optional<std::string> generated_text(const Scenario& scenario);
+
+/// The scenario's world: what its file holds, or what its recipe gives.
+MjcfElement world_mjcf(const Scenario& scenario);
+
+/// What a scenario's models are loaded for.
+enum class Looks {
+  kAll,
+  kNone,  ///< no textures: the same geometry, loaded many times faster
+};
 
 /// A world file and a robot file composed into one MuJoCo model. Constant after loading.
 /// The robot's root body is the body of the robot file that has a free joint; its frame is `body`
@@ -17,7 +33,7 @@ class World {
  public:
   /// @throws InputError naming file, line and element (a missing texture, XML that MuJoCo rejects, no robot
   /// body)
-  static World load(const Scenario& scenario);
+  static World load(const Scenario& scenario, Looks looks = Looks::kAll);
   /// A world without a robot, for tests and previews.
   static World load_file(const std::string& world_file);
 

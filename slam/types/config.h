@@ -64,6 +64,11 @@ template <class T>
 concept Checkable = requires(const T& value, ConfigReader& reader) {
   value.check(reader);
 };
+/// A struct of which one text stands for the whole: `world: lab.xml` is short for `world: {file: lab.xml}`.
+template <class T>
+concept HasShortForm = requires(T& value) {
+  { value.short_form() } -> std::same_as<std::string&>;
+};
 
 /// Reads one YAML map into a struct. Missing keys keep the struct's value; unknown keys, wrong types and
 /// values out of range are collected. A struct may add `void check(ConfigReader&) const` for rules over
@@ -154,6 +159,8 @@ std::string ConfigReader::describe(const T&, const Field& field) {
     return "a text";
   else if constexpr (config_detail::IsVector<T>::value)
     return "a list";
+  else if constexpr (HasShortForm<T>)
+    return "a text, or a map of keys and values";
   else
     return "a map of keys and values";
 }
@@ -179,7 +186,13 @@ void ConfigReader::read(const YAML::Node& child, const std::string& key, T& valu
       read(entry.second, key + "." + name, value[name], field);
     }
   } else if constexpr (Visitable<T>) {
-    if (!child.IsMap()) return wrong(child, key, "a map of keys and values");
+    if constexpr (HasShortForm<T>) {
+      if (child.IsScalar()) {
+        value = T{};
+        return read(child, key, value.short_form(), field);
+      }
+    }
+    if (!child.IsMap()) return wrong(child, key, describe(value, field));
     ConfigReader inner(child, file_, path_of(key), problems_, line_);
     inner.set_overlay(overlay_);
     value.visit(inner);
@@ -263,6 +276,9 @@ class ConfigWriter {
       }
       out_ << YAML::EndMap;
     } else if constexpr (Visitable<T>) {
+      if constexpr (HasShortForm<T>) {
+        if (!value.short_form().empty()) return write(value.short_form());
+      }
       out_ << YAML::BeginMap;
       value.visit(*this);
       out_ << YAML::EndMap;

@@ -15,7 +15,7 @@ World world_with(const std::string& robot_file) {
   const fs::path floor = fs::temp_directory_path() / "groundloop_drive_floor.xml";
   std::ofstream(floor) << "<mujoco><worldbody><geom type='plane' size='5 5 1'/></worldbody></mujoco>";
   Scenario scenario;
-  scenario.world = floor.string();
+  scenario.world.file = floor.string();
   scenario.robot.model = robot_file;
   return World::load(scenario);
 }

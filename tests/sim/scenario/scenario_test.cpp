@@ -96,7 +96,7 @@ TEST_F(ScenarioFiles, ReadsEveryPart) {
 
 TEST_F(ScenarioFiles, PathsAreAbsoluteAndRelativeToTheFile) {
   const Scenario s = load_scenario(write(kGood));
-  EXPECT_EQ(s.world, (folder_ / "models" / "room.xml").string());
+  EXPECT_EQ(s.world.file, (folder_ / "models" / "room.xml").string());
   EXPECT_EQ(s.robot.model, (folder_ / "models" / "robot.xml").string());
   EXPECT_EQ(s.head.model, (folder_ / "models" / "head.yaml").string());
 }
@@ -117,7 +117,7 @@ TEST_F(ScenarioFiles, WrittenScenarioLoadsAgainAsTheSame) {
   EXPECT_EQ(to_yaml(again), text);
   EXPECT_EQ(again.plan.feedback, Feedback::kOdometry);
   EXPECT_EQ(again.robot.start.y_m, 0.1) << "to the last bit";
-  EXPECT_EQ(again.world, s.world);
+  EXPECT_EQ(again.world.file, s.world.file);
   EXPECT_EQ(again.slam.set, s.slam.set);
   EXPECT_EQ(again.expect.metrics.at("map.with_true_poses.f1").min, 0.9);
 }

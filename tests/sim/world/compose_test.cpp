@@ -124,7 +124,7 @@ TEST_F(ComposeTest, ClashesAreAllNamedWithBothPlaces) {
   EXPECT_EQ(problems[0].key, "body 'base'");
   EXPECT_EQ(problems[1].key, "geom 'hull'");
   EXPECT_EQ(problems[2].key, "material 'black'");
-  EXPECT_EQ(problems[2].file, clashing.world);
+  EXPECT_EQ(problems[2].file, clashing.world.file);
   EXPECT_EQ(problems[2].line, 3);
   EXPECT_EQ(problems[2].wanted, "another name than in " + clashing.robot.model + ":2");
   EXPECT_EQ(problems[3].key, "option");

@@ -33,7 +33,7 @@ class Scratch : public ::testing::Test {
 
   Scenario scenario(const std::string& world, const std::string& robot) const {
     Scenario scenario;
-    scenario.world = write("world.xml", world);
+    scenario.world.file = write("world.xml", world);
     scenario.robot.model = write("robot.xml", robot);
     return scenario;
   }
