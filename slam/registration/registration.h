@@ -54,8 +54,9 @@ struct RegistrationResult {
   bool usable = false;
   std::string message = "not run";
   Pose T_from_to = Pose::Identity();  ///< pose of the second left camera in the first
-  Matrix6d covariance =
-      Matrix6d::Zero();         ///< of T_from_to, right perturbation (translation, rotation) in `to`
+  /// Of T_from_to, right perturbation (translation, rotation) in `to`: of the errors that this cost makes
+  /// from measurements of the stated precision.
+  Matrix6d covariance = Matrix6d::Zero();
   std::vector<uint8_t> inlier;  ///< per pair
   int inliers = 0;
   double residual_px = 0;  ///< rms reprojection misfit of the inliers, per coordinate
@@ -84,6 +85,7 @@ class Registration {
   int refine_scalar(const std::vector<PointPair>& pairs, Pose& T_to_from);
   int refine_reprojection(const std::vector<PointPair>& pairs, Pose& T_to_from);
   Matrix6d information(const std::vector<PointPair>& pairs, const Pose& T_to_from, Vector6d* gradient) const;
+  bool covariance(const std::vector<PointPair>& pairs, const Pose& T_to_from, Matrix6d& covariance) const;
   double misfit2_px(const PointPair& pair, const Pose& T_to_from) const;
 
   StereoRig rig_;
