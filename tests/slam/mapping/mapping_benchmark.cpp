@@ -1,5 +1,6 @@
 #include <benchmark/benchmark.h>
 
+#include "slam/mapping/grid_matcher.h"
 #include "slam/mapping/local_map.h"
 #include "tests/slam/mapping/room_world.h"
 
@@ -47,6 +48,27 @@ void fuse_the_map(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(grid.map());
 }
 BENCHMARK(fuse_the_map)->Unit(benchmark::kMillisecond);
+
+/// The map of 15 key frames against that of a lap, over the whole search window.
+void match_local_to_global_map(benchmark::State& state) {
+  const auto mapped = [](const std::vector<Pose>& poses, uint64_t seed) {
+    FlogGrid grid(FlogOptions{});
+    LocalMap local(FlogOptions{}, laboratory_rig());
+    for (size_t i = 0; i < poses.size(); ++i) {
+      local.add_key_frame(poses[i].translation(),
+                          measure(RoomWorld::laboratory(), laboratory_rig(), poses[i], 500, 0.25, seed + i));
+      local.add_to(grid);
+    }
+    return grid.map();
+  };
+  const std::vector<Pose> lap = laboratory_lap(60);
+  const OccupancyMap global = mapped(lap, 1);
+  const OccupancyMap local = mapped({lap.begin() + 20, lap.begin() + 35}, 100);
+  PlanarPose prior;
+  prior.covariance.setIdentity();  // the window is as large as the options allow
+  for (auto _ : state) benchmark::DoNotOptimize(match_maps(global, local, prior, MapMatchOptions{}));
+}
+BENCHMARK(match_local_to_global_map)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace groundloop::slam
