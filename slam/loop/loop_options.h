@@ -7,14 +7,15 @@ namespace groundloop::slam {
 /// Options of place recognition by stored visual landmarks. YAML: slam.loop
 struct LoopOptions {
   bool enabled = true;
-  int descriptors = 400;          ///< described corners a key frame
-  int landmarks = 160;            ///< stored landmarks looked for in the current images, at most
-  int candidates = 3;             ///< stored views tried a key frame
-  int min_age_frames = 60;        ///< younger views are the tracker's own ground
-  int max_views = 1000;           ///< beyond it no further view is stored
-  int min_inliers = 25;           ///< landmarks that agree on one motion
-  double min_inlier_ratio = 0.4;  ///< of the landmarks that should be seen, in both directions
-  int min_cells = 8;              ///< of an 8 x 6 grid over the image, that hold an agreeing landmark
+  int descriptors = 400;           ///< described corners a key frame
+  int landmarks = 160;             ///< stored landmarks looked for in the current images, at most
+  int candidates = 3;              ///< stored views tried a key frame
+  int min_age_frames = 150;        ///< younger views are the tracker's own ground
+  int max_views = 1000;            ///< beyond it no further view is stored
+  int min_inliers = 25;            ///< landmarks that agree on one motion
+  double min_inlier_ratio = 0.45;  ///< of the stored landmarks that should be seen now
+  double min_reverse_ratio = 0.4;  ///< of the current landmarks that should be in the stored image
+  int min_cells = 8;               ///< of an 8 x 6 grid over the image, that hold an agreeing landmark
   double max_sigma_ratio =
       0.005;                   ///< position uncertainty of a link, relative to the landmarks' median depth
   double max_sigma_deg = 0.3;  ///< rotation uncertainty of a link
@@ -34,6 +35,7 @@ struct LoopOptions {
     a("max_views", max_views, {.min = 1, .max = 1000000});
     a("min_inliers", min_inliers, {.min = 6, .max = 1000});
     a("min_inlier_ratio", min_inlier_ratio, {.min = 0, .max = 1});
+    a("min_reverse_ratio", min_reverse_ratio, {.min = 0, .max = 1});
     a("min_cells", min_cells, {.min = 1, .max = 48});
     a("max_sigma_ratio", max_sigma_ratio, {.min = 1e-5, .max = 1});
     a("max_sigma_deg", max_sigma_deg, {.min = 1e-3, .max = 180});

@@ -36,6 +36,12 @@ RegistrationOptions coarse_options(RegistrationOptions options) {
   return options;
 }
 
+/// A link is measured once and kept: the tracker's haste does not pay.
+KltOptions patient(KltOptions options) {
+  options.converged_px = std::min(options.converged_px, 0.015);
+  return options;
+}
+
 RegistrationOptions fine_options(RegistrationOptions options) {
   options.cost = RegistrationCost::kReprojection;
   options.inlier_gate_px = kAgreement_px;
@@ -92,8 +98,8 @@ LoopVerifier::LoopVerifier(const StereoRig& rig, const LoopOptions& options, con
                            const StereoOptions& stereo, const RegistrationOptions& registration)
     : rig_(rig),
       options_(options),
-      klt_(klt),
-      matcher_(rig, stereo, klt),
+      klt_(patient(klt)),
+      matcher_(rig, stereo, klt_),
       sigma_px_(registration.sigma_px),
       coarse_(rig, coarse_options(registration)),
       fine_(rig, fine_options(registration)) {}
@@ -274,9 +280,9 @@ std::string LoopVerifier::refusal(const StoredView& stored, const Verification& 
     return fmt::format("{} of {} stored landmarks found, {:.0f} % needed", found.link.inliers, found.expected,
                        100 * options_.min_inlier_ratio);
   }
-  if (found.reverse_ratio < options_.min_inlier_ratio) {
+  if (found.reverse_ratio < options_.min_reverse_ratio) {
     return fmt::format("{:.0f} % of the current landmarks found in the stored view, {:.0f} % needed",
-                       100 * found.reverse_ratio, 100 * options_.min_inlier_ratio);
+                       100 * found.reverse_ratio, 100 * options_.min_reverse_ratio);
   }
   const int cells = occupied_cells(search_);
   if (cells < options_.min_cells) {

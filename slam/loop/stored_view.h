@@ -27,8 +27,8 @@ using Descriptor = std::array<uint64_t, 4>;
 
 /// A described corner with a rough depth.
 struct Keypoint {
-  Eigen::Vector3f uvu_px;  ///< (u_left, v, u_right)
-  Descriptor descriptor;
+  Eigen::Vector3f uvu_px = Eigen::Vector3f::Zero();  ///< (u_left, v, u_right)
+  Descriptor descriptor{};
 };
 
 /// What is kept of a key frame so that its place is known again: its left image, from which the first views

@@ -1,0 +1,216 @@
+#include "slam/loop/loop_verifier.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <numbers>
+
+#include "tests/slam/loop/painted_room.h"
+
+namespace groundloop::slam {
+namespace {
+
+using ::testing::HasSubstr;
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// From a known place, 2.2 m before the far wall, looking at it at an angle.
+const Pose kHere = PaintedRoom::T_room_left(0, 0.8, 70);
+
+Pose moved(double right_m, double down_m, double forward_m, double pitch_deg, double yaw_deg,
+           double roll_deg) {
+  Pose T = Pose::Identity();
+  T.translation() << right_m, down_m, forward_m;
+  T.linear() = so3_exp({pitch_deg * kDegree, yaw_deg * kDegree, roll_deg * kDegree});
+  return T;
+}
+
+PosePrediction prediction_of(const Pose& T_from_to, double sigma_m, double sigma_deg) {
+  PosePrediction prediction{T_from_to, Matrix6d::Zero()};
+  prediction.covariance.diagonal().head<3>().setConstant(sigma_m * sigma_m);
+  prediction.covariance.diagonal().tail<3>().setConstant(std::pow(sigma_deg * kDegree, 2));
+  return prediction;
+}
+
+Vector6d error_of(const Verification& found, const Pose& T_from_to) {
+  return se3_log(T_from_to.inverse() * found.link.T_from_to);
+}
+
+struct Revisit {
+  const char* name;
+  Pose T_from_to;
+  Light light = {1, 0, 1.5, 0};
+};
+
+class Revisits : public ::testing::TestWithParam<Revisit> {};
+
+TEST_P(Revisits, AreFoundAndMeasured) {
+  const PaintedRoom room(1);
+  const CurrentView stored = current_view(room.key_frame(10, kHere));
+  const CurrentView current =
+      current_view(room.key_frame(200, kHere * GetParam().T_from_to, GetParam().light));
+  LoopVerifier verifier = make_verifier();
+  const Verification found = verifier.verify(stored.view, current, std::nullopt, 1);
+  ASSERT_TRUE(found.accepted) << found.message;
+  EXPECT_EQ(found.link.kind, LinkKind::kLandmarks);
+  EXPECT_EQ(found.link.from_index, 10);
+  EXPECT_EQ(found.link.to_index, 200);
+  const Vector6d error = error_of(found, GetParam().T_from_to);
+  EXPECT_LT(error.head<3>().norm(), 0.010);
+  EXPECT_LT(error.tail<3>().norm(), 0.3 * kDegree);
+  EXPECT_LT(found.link.residual_px, 0.6);
+
+  // The same from a prediction that is off by its own uncertainty.
+  const Pose T_predicted = GetParam().T_from_to * moved(0.02, 0, -0.02, 0.1, 0.3, 0.1);
+  const Verification again = verifier.verify(stored.view, current, prediction_of(T_predicted, 0.02, 0.3), 1);
+  ASSERT_TRUE(again.accepted) << again.message;
+  EXPECT_LT(error_of(again, GetParam().T_from_to).head<3>().norm(), 0.010);
+}
+
+INSTANTIATE_TEST_SUITE_P(Loop, Revisits,
+                         ::testing::Values(Revisit{"SamePlace", Pose::Identity()},
+                                           Revisit{"HalfAMetreAside", moved(0.5, 0, 0, 0, -8, 0)},
+                                           Revisit{"Turned30Degrees", moved(-0.3, 0, 0.1, 0, 30, 0)},
+                                           Revisit{"Nearer", moved(0.1, 0, 0.5, 0, 5, 0)},
+                                           Revisit{"FartherAndHigher", moved(0, -0.2, -0.5, -5, 0, 0)},
+                                           Revisit{"Rolled", moved(0.05, 0, 0, 0, 0, 25)},
+                                           Revisit{"Darker", moved(0.1, 0, 0.1, 0, 3, 0), {0.6, 10, 1.5, 0}},
+                                           Revisit{
+                                               "Brighter", moved(0.1, 0, 0.1, 0, -3, 0), {1.2, 15, 1.5, 0}}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(LoopVerifier, ItsErrorIsWithinItsCovariance) {
+  const PaintedRoom room(2);
+  const CurrentView stored = current_view(room.key_frame(10, kHere));
+  LoopVerifier verifier = make_verifier();
+  double nees = 0;
+  int links = 0;
+  for (uint64_t k = 0; k < 12; ++k) {
+    const auto within = [k](uint64_t stream, double reach) {
+      return reach * (2 * uniform(9, stream, k) - 1);
+    };
+    const Pose T =
+        moved(within(0, 0.3), within(1, 0.1), within(2, 0.3), within(3, 4), within(4, 12), within(5, 4));
+    const CurrentView current = current_view(room.key_frame(100 + static_cast<int64_t>(k), kHere * T));
+    const Verification found = verifier.verify(stored.view, current, std::nullopt, k);
+    if (!found.accepted) continue;
+    ++links;
+    const Vector6d error = error_of(found, T);
+    nees += error.dot(found.link.covariance.inverse() * error);
+  }
+  EXPECT_EQ(links, 12);
+  // 6 when exact. Above: the 0.1 % bound of chi-square with 72 degrees of freedom. Below: a standard
+  // deviation that is at most 2.5 times too large, since misfits are taken for what they would be if nothing
+  // explained them and these clean pictures have few other errors.
+  EXPECT_LT(nees / links, 9.2);
+  EXPECT_GT(nees / links, 1);
+}
+
+TEST(LoopVerifier, SeesNoLinkToWhatIsBehind) {
+  const PaintedRoom room(1);
+  const CurrentView stored = current_view(room.key_frame(10, kHere));
+  LoopVerifier verifier = make_verifier();
+  for (const double yaw_deg : {180.0, 250.0, 300.0}) {
+    const Pose T_room_left = PaintedRoom::T_room_left(0, 0.8, yaw_deg);
+    const CurrentView current = current_view(room.key_frame(200, T_room_left));
+    const Verification unpredicted = verifier.verify(stored.view, current, std::nullopt, 1);
+    EXPECT_FALSE(unpredicted.accepted);
+    EXPECT_THAT(unpredicted.message, HasSubstr("descriptors: "));
+    const Verification predicted =
+        verifier.verify(stored.view, current, prediction_of(kHere.inverse() * T_room_left, 0.02, 0.3), 1);
+    EXPECT_FALSE(predicted.accepted);
+  }
+}
+
+TEST(LoopVerifier, IsNotDeceivedByACopyOfAPicture) {
+  // The same picture hangs at two places; what is around it differs.
+  const PaintedRoom room(3, {.period_m = 0, .posters = {{-5, 3, 1.2}, {5, 3, 1.2}}});
+  const CurrentView stored = current_view(room.key_frame(10, PaintedRoom::T_room_left(-5, 0.8, 90)));
+  const CurrentView copy = current_view(room.key_frame(200, PaintedRoom::T_room_left(5.1, 0.9, 90)));
+  const CurrentView same = current_view(room.key_frame(200, PaintedRoom::T_room_left(-4.9, 0.9, 90)));
+  LoopVerifier verifier = make_verifier();
+  EXPECT_TRUE(verifier.verify(stored.view, same, std::nullopt, 1).accepted);
+  const Verification found = verifier.verify(stored.view, copy, std::nullopt, 1);
+  EXPECT_FALSE(found.accepted);
+  EXPECT_GE(found.link.inliers, 25) << "the picture itself must have been found for this to be a test";
+  EXPECT_THAT(found.message, HasSubstr("stored landmarks found, 45 % needed"));
+  // What is around the picture now was not there then: that alone would do.
+  LoopOptions reverse_only;
+  reverse_only.min_inlier_ratio = 0;
+  reverse_only.min_reverse_ratio = 0.7;
+  EXPECT_THAT(make_verifier(reverse_only).verify(stored.view, copy, std::nullopt, 1).message,
+              HasSubstr("of the current landmarks found in the stored view, 70 % needed"));
+}
+
+TEST(LoopVerifier, RefusesWhatContradictsThePrediction) {
+  // A corridor that repeats every 4 m looks exactly the same one period on; only the prediction tells.
+  const PaintedRoom corridor(4, {.period_m = 4, .posters = {}});
+  const CurrentView stored = current_view(corridor.key_frame(10, PaintedRoom::T_room_left(-3, 0.8, 70)));
+  const Pose T_room_copy = PaintedRoom::T_room_left(1.1, 0.8, 70);
+  const CurrentView copy = current_view(corridor.key_frame(200, T_room_copy));
+  LoopVerifier verifier = make_verifier();
+  const Pose T_from_to = PaintedRoom::T_room_left(-3, 0.8, 70).inverse() * T_room_copy;
+  EXPECT_TRUE(verifier.verify(stored.view, copy, std::nullopt, 1).accepted);
+  const Verification found = verifier.verify(stored.view, copy, prediction_of(T_from_to, 0.3, 2), 1);
+  EXPECT_FALSE(found.accepted);
+  EXPECT_THAT(found.message, HasSubstr("sigma from the predicted pose, 4.5 allowed"));
+}
+
+TEST(LoopVerifier, SaysWhatIsMissing) {
+  const PaintedRoom room(1);
+  const CurrentView stored = current_view(room.key_frame(10, kHere));
+  const CurrentView current = current_view(room.key_frame(200, kHere * moved(0.4, 0, 0.3, 0, 15, 10)));
+  const auto message = [&](const LoopOptions& options) {
+    return make_verifier(options).verify(stored.view, current, std::nullopt, 1).message;
+  };
+  LoopOptions options;
+  EXPECT_EQ(message(options), "");
+  options.min_inliers = 1000;
+  EXPECT_THAT(message(options), HasSubstr("landmarks agree, 1000 needed"));
+  options = {};
+  options.min_inlier_ratio = 1;
+  EXPECT_THAT(message(options), HasSubstr("stored landmarks found, 100 % needed"));
+  options = {};
+  options.min_cells = 48;
+  EXPECT_THAT(message(options), HasSubstr("of 48 parts of the image, 48 needed"));
+  options = {};
+  options.max_sigma_ratio = 1e-5;
+  EXPECT_THAT(message(options), HasSubstr("uncertain by"));
+}
+
+TEST(LoopVerifier, LooksAtNothingInAnEmptyView) {
+  const PaintedRoom room(1);
+  const CurrentView current = current_view(room.key_frame(200, kHere));
+  StoredView empty;
+  empty.grey = cv::Mat(240, 320, CV_8UC1, cv::Scalar(128));
+  LoopVerifier verifier = make_verifier();
+  EXPECT_FALSE(verifier.verify(empty, current, std::nullopt, 1).accepted);
+  EXPECT_FALSE(verifier.verify(empty, current, prediction_of(Pose::Identity(), 0.01, 0.1), 1).accepted);
+}
+
+TEST(PredictedShape, IsTheDerivativeOfThePictureOfAFacingSurface) {
+  const StereoRig rig = PaintedRoom::rig();
+  const Pose T_to_from = moved(0.3, -0.1, 0.2, 5, -20, 10);
+  const Eigen::Vector3d p(0.4, -0.3, 2);
+  const Eigen::Vector3d n = p.normalized();
+  for (const double offset_m : {0.0, rig.baseline_m}) {
+    // the pixel (u, v) meets the plane n.x = n.p and is seen from the other camera
+    const auto other = [&](const Eigen::Vector2d& uv) -> Eigen::Vector2d {
+      const Eigen::Vector3d ray((uv.x() - rig.cx_px) / rig.fx_px, (uv.y() - rig.cy_px) / rig.fy_px, 1);
+      Eigen::Vector3d q = T_to_from * (ray * (n.dot(p) / n.dot(ray)));
+      q.x() -= offset_m;
+      return {rig.fx_px * q.x() / q.z() + rig.cx_px, rig.fy_px * q.y() / q.z() + rig.cy_px};
+    };
+    const Eigen::Matrix2d A = predicted_shape(rig, T_to_from, p, offset_m);
+    const Eigen::Vector2d uv = rig.project(p).head<2>();
+    constexpr double kStep_px = 1e-4;
+    for (int k = 0; k < 2; ++k) {
+      const Eigen::Vector2d step = kStep_px * Eigen::Vector2d::Unit(k);
+      const Eigen::Vector2d slope = (other(uv + step) - other(uv - step)) / (2 * kStep_px);
+      EXPECT_LT((A.col(k) - slope).norm(), 1e-7);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace groundloop::slam
