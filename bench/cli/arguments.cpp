@@ -24,12 +24,39 @@ SeedRange parse_seeds(const std::string& text) {
   return {*first, *last};
 }
 
+OracleStages parse_stages(const std::vector<std::string>& names) {
+  OracleStages stages;
+  for (const std::string& name : names) {
+    bool found = false;
+    std::string known;
+    for (const auto& [stage, stage_name] : EnumNames<slam::OracleStage>::names) {
+      known += (known.empty() ? "" : ", ") + std::string(stage_name);
+      if (name != stage_name) continue;
+      stages.insert(stage);
+      found = true;
+    }
+    if (!found) throw InputError(Problem{"", 0, "--oracle", name, "one of: " + known});
+  }
+  return stages;
+}
+
 sim::Override parse_override(const std::string& text) {
   const size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
     throw InputError(Problem{"", 0, "--set", text, "key=value, such as slam.preset=paper"});
   }
   return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+std::vector<sim::Override> overrides_of(const std::vector<std::string>& texts) {
+  std::vector<sim::Override> overrides;
+  overrides.reserve(texts.size());
+  for (const std::string& text : texts) overrides.push_back(parse_override(text));
+  return overrides;
+}
+
+CLI::Option* add_set(CLI::App& command, std::vector<std::string>& set, const std::string& help) {
+  return command.add_option("--set", set, help)->type_name("KEY=VALUE")->expected(1)->allow_extra_args(false);
 }
 
 }  // namespace groundloop::bench

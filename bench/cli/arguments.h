@@ -34,8 +34,16 @@ CLI::Option* add_choice(CLI::App& command, const std::string& name, E& value, co
 /// @throws InputError
 SeedRange parse_seeds(const std::string& text);
 
+/// Names of stages, as "tracking"; none: an empty set.
+/// @throws InputError
+OracleStages parse_stages(const std::vector<std::string>& names);
+
 /// "key=value"; the value may hold further equals signs.
 /// @throws InputError
 sim::Override parse_override(const std::string& text);
+std::vector<sim::Override> overrides_of(const std::vector<std::string>& texts);
+
+/// The option `--set KEY=VALUE`, repeatable.
+CLI::Option* add_set(CLI::App& command, std::vector<std::string>& set, const std::string& help);
 
 }  // namespace groundloop::bench

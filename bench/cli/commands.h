@@ -15,6 +15,7 @@ using CommandAction = std::function<int()>;
 void add_commands(CLI::App& app, CommandAction& action);
 
 void add_run_command(CLI::App& app, CommandAction& action);
+void add_oracles_command(CLI::App& app, CommandAction& action);
 void add_replay_command(CLI::App& app, CommandAction& action);
 void add_eval_command(CLI::App& app, CommandAction& action);
 void add_validate_command(CLI::App& app, CommandAction& action);

@@ -4,12 +4,12 @@
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "bench/cli/arguments.h"
 #include "bench/cli/commands.h"
-#include "bench/cli/interrupt.h"
 #include "bench/cli/progress.h"
+#include "bench/cli/run_answer.h"
+#include "bench/cli/seed_summary.h"
 #include "bench/runner/replay.h"
 #include "bench/runner/run.h"
 #include "bench/verdict/junit.h"
@@ -17,83 +17,6 @@
 
 namespace groundloop::bench {
 namespace {
-
-using nlohmann::ordered_json;
-
-/// The metrics that the one line of a run shows, where they were measured.
-struct Headline {
-  const char* metric;
-  const char* format;
-};
-constexpr Headline kHeadlines[] = {{"trajectory.ate_rmse_m", "ATE {:.3f} m"},
-                                   {"trajectory.planar_rmse_m", "planar {:.4f} m"},
-                                   {"trajectory.drift_5m_percent", "drift {:.2f} %"},
-                                   {"trajectory.end_yaw_deg", "end yaw {:.2f} deg"},
-                                   {"map.f1", "map F1 {:.3f}"},
-                                   {"trajectory.lost_frames", "lost {:.0f}"},
-                                   {"timing.slam_ms_median", "SLAM {:.1f} ms"}};
-
-std::string headline(const Metrics& metrics) {
-  std::string text;
-  for (const Headline& shown : kHeadlines) {
-    const auto found = metrics.find(shown.metric);
-    if (found != metrics.end()) text += "  " + fmt::format(fmt::runtime(shown.format), found->second);
-  }
-  return text;
-}
-
-/// @param seeded  false for a recording, which has no seed
-void print_text(const RunOutcome& run, bool seeded) {
-  const std::string seed = seeded ? fmt::format(" seed {}", run.seed) : "";
-  fmt::print("{}{}: {}{}\n", run.name, seed, name_of(run.verdict.outcome), headline(run.metrics));
-  for (const Shortfall& missed : run.verdict.shortfalls) fmt::print("  {}\n", missed.text());
-  if (run.verdict.outcome > Outcome::kFellShort) fmt::print(stderr, "{}\n", run.verdict.message);
-  if (!run.folder.empty()) fmt::print("  {}/report.html\n", run.folder);
-}
-
-ordered_json as_json(const RunOutcome& run) {
-  ordered_json shortfalls = ordered_json::array();
-  for (const Shortfall& missed : run.verdict.shortfalls) {
-    ordered_json entry = {{"metric", missed.metric}};
-    entry["value"] = missed.value ? ordered_json(*missed.value) : ordered_json(nullptr);
-    if (missed.min) entry["min"] = *missed.min;
-    if (missed.max) entry["max"] = *missed.max;
-    shortfalls.push_back(entry);
-  }
-  return {{"name", run.name},
-          {"seed", run.seed},
-          {"outcome", name_of(run.verdict.outcome)},
-          {"message", run.verdict.message},
-          {"shortfalls", shortfalls},
-          {"folder", run.folder},
-          {"wall_s", run.wall_s},
-          {"metrics", run.metrics}};
-}
-
-/// Reports what came out; the exit code is that of the worst run.
-int report(const std::vector<RunOutcome>& runs, bool seeded, bool json) {
-  std::vector<Verdict> verdicts;
-  ordered_json answer = ordered_json::array();
-  for (const RunOutcome& run : runs) {
-    verdicts.push_back(run.verdict);
-    if (json) {
-      answer.push_back(as_json(run));
-    } else {
-      print_text(run, seeded);
-    }
-  }
-  if (json) fmt::print("{}\n", answer.dump(2));
-  return exit_code(worst(verdicts));
-}
-
-JobControl control_with(Progress& progress) {
-  JobControl control;
-  control.progress = [&progress](const std::string& run, int64_t done, int64_t total) {
-    progress.update(run, done, total);
-  };
-  control.stop = &stop_on_interrupt();
-  return control;
-}
 
 /// Long runs must not end with a verdict that cannot be written.
 void check_writable(const std::string& file) {
@@ -112,10 +35,12 @@ int run_scenarios(const RunOptions& options) {
   if (!options.junit.empty()) {
     std::vector<JudgedRun> judged;
     judged.reserve(runs.size());
-    for (const RunOutcome& run : runs) judged.push_back({run.name, run.seed, run.wall_s, run.verdict});
+    for (const RunOutcome& run : runs) judged.push_back({run.title(), run.seed, run.wall_s, run.verdict});
     write_junit(options.junit, "groundloop", judged);
   }
-  return report(runs, true, options.json);
+  const int code = report(runs, true, options.json);
+  if (!options.json) fmt::print("{}", seed_summary(runs));
+  return code;
 }
 
 int replay_sequence(const ReplayOptions& options) {
@@ -131,18 +56,8 @@ int replay_sequence(const ReplayOptions& options) {
 struct RawArguments {
   std::string seeds;
   std::vector<std::string> set;
+  std::vector<std::string> oracles;
 };
-
-std::vector<sim::Override> overrides_of(const std::vector<std::string>& texts) {
-  std::vector<sim::Override> overrides;
-  overrides.reserve(texts.size());
-  for (const std::string& text : texts) overrides.push_back(parse_override(text));
-  return overrides;
-}
-
-CLI::Option* add_set(CLI::App& command, std::vector<std::string>& set, const std::string& help) {
-  return command.add_option("--set", set, help)->type_name("KEY=VALUE")->expected(1)->allow_extra_args(false);
-}
 
 }  // namespace
 
@@ -159,6 +74,13 @@ void add_run_command(CLI::App& app, CommandAction& action) {
   add_set(*command, raw->set,
           "set a key of the scenario, such as plan.speed_mps=0.2 or slam.preset=paper; repeatable");
   command
+      ->add_option("--oracle", raw->oracles,
+                   "replace a stage by exact answers: tracking, stereo, motion or loops; repeatable. An "
+                   "experiment: the run says so everywhere")
+      ->type_name("STAGE")
+      ->expected(1)
+      ->allow_extra_args(false);
+  command
       ->add_option("--out", options->out, "run folder (of several runs: its parent); default runs/NAME-SEED")
       ->type_name("DIR");
   command->add_option("--junit", options->junit, "write the verdicts as JUnit XML")->type_name("FILE");
@@ -171,6 +93,7 @@ void add_run_command(CLI::App& app, CommandAction& action) {
     action = [=] {
       if (!raw->seeds.empty()) options->seeds = parse_seeds(raw->seeds);
       options->set = overrides_of(raw->set);
+      options->oracles = parse_stages(raw->oracles);
       return run_scenarios(*options);
     };
   });

@@ -25,6 +25,8 @@ inline constexpr Colour kGrid(0xd9dee5);
 inline constexpr Colour kTruth(0x1b2430);
 inline constexpr Colour kEstimate(0xe8384f);
 inline constexpr Colour kKeyFrame(0x8a1538);
+inline constexpr Colour kWithoutLinks(0xf08c2e);
+inline constexpr Colour kLink(0x7a3fc4);
 inline constexpr Colour kStart(0x12905a);
 inline constexpr Colour kEnd(0x1f5fd0);
 inline constexpr Colour kThing(0xdfe4ea);

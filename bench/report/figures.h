@@ -36,18 +36,27 @@ struct DrawnPoint {
   float sigma_m = 0;                            ///< standard deviation along its ray; larger is drawn fainter
 };
 
+/// A recognised place: from where it was seen first to where it was seen again.
+struct DrawnLink {
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< left camera [m]
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();
+  bool wrong = false;  ///< by the truth
+};
+
 /// What a top view shows. Everything is in one frame with z up: the world of a simulated run, the map of a
 /// replay.
 struct TopView {
-  slam::Trajectory truth;              ///< left camera; may be empty
-  slam::Trajectory estimate;           ///< left camera
+  slam::Trajectory truth;          ///< left camera; may be empty
+  slam::Trajectory estimate;       ///< left camera
+  slam::Trajectory without_links;  ///< the estimate had no place been recognised; may be empty
+  std::vector<DrawnLink> links;
   std::vector<slam::Pose> key_frames;  ///< left camera; a dot for position and a segment for heading each
   std::vector<DrawnPoint> cloud;
   std::vector<Footprint> outline;
 };
 
-/// Estimated and true trajectory, key frames and cloud over the scene, from above (paper Fig. 3 and 8), 1600
-/// px wide.
+/// Estimated and true trajectory, links between places, key frames and cloud over the scene, from above
+/// (paper Fig. 3 and 8), 1600 px wide.
 cv::Mat draw_top_view(const TopView& view);
 
 /// The values of `map` on a grid of another frame: each cell takes the value at its centre, unknown outside.

@@ -25,7 +25,7 @@ float quantile(std::vector<float>& values, double fraction) {
 /// What must be in the picture: paths and scene; without a scene, the bulk of the cloud as well.
 Bounds bounds_of(const TopView& view) {
   Bounds bounds;
-  for (const auto* trajectory : {&view.truth, &view.estimate}) {
+  for (const auto* trajectory : {&view.truth, &view.estimate, &view.without_links}) {
     for (const auto& pose : *trajectory) bounds.add(pose.T.translation().head<2>());
   }
   for (const Footprint& footprint : view.outline) {
@@ -102,6 +102,21 @@ void draw_key_frames(Canvas& canvas, const PlanView& view, const std::vector<sla
   }
 }
 
+/// Thin lines from where a place was seen first to where it was recognised; wrong ones are crossed out.
+void draw_links(Canvas& canvas, const PlanView& view, const std::vector<DrawnLink>& links) {
+  for (const DrawnLink& link : links) {
+    const cv::Point2d from = view(link.from.head<2>()), to = view(link.to.head<2>());
+    const Colour colour = link.wrong ? palette::kEstimate : palette::kLink;
+    canvas.line(from, to, colour, 0.9);
+    canvas.disc(from, 2.2, colour);
+    canvas.disc(to, 2.2, colour);
+    if (!link.wrong) continue;
+    const cv::Point2d middle = (from + to) / 2;
+    canvas.line(middle - cv::Point2d(5, 5), middle + cv::Point2d(5, 5), colour, 1.8);
+    canvas.line(middle - cv::Point2d(5, -5), middle + cv::Point2d(5, -5), colour, 1.8);
+  }
+}
+
 void draw_height_bar(Canvas& canvas, const PlanView& view, const Heights& heights,
                      const std::vector<cv::Vec3b>& colours) {
   const int height = static_cast<int>(std::min(360.0, view.panel().height - 60));
@@ -122,6 +137,16 @@ std::vector<LegendItem> legend_of(const TopView& view) {
   std::vector<LegendItem> items;
   if (!view.truth.empty()) items.push_back({Mark::kLine, palette::kTruth, "true trajectory"});
   if (!view.estimate.empty()) items.push_back({Mark::kLine, palette::kEstimate, "estimated trajectory"});
+  if (!view.without_links.empty()) {
+    items.push_back({Mark::kLine, palette::kWithoutLinks, "the same without links"});
+  }
+  if (!view.links.empty()) {
+    const auto wrong =
+        std::count_if(view.links.begin(), view.links.end(), [](const DrawnLink& l) { return l.wrong; });
+    std::string text = fmt::format("recognised places ({})", view.links.size());
+    if (wrong > 0) text.insert(text.size() - 1, fmt::format(", {} wrong", wrong));
+    items.push_back({Mark::kLine, palette::kLink, text});
+  }
   if (!view.key_frames.empty())
     items.push_back({Mark::kHeading, palette::kKeyFrame, "key frame and heading"});
   if (!view.cloud.empty()) {
@@ -147,8 +172,10 @@ cv::Mat draw_top_view(const TopView& view) {
   }
   draw_path(canvas, plan, view.truth, palette::kPaper, 7);  // a pale rim keeps the path readable on the cloud
   draw_path(canvas, plan, view.truth, palette::kTruth, 4);
+  draw_path(canvas, plan, view.without_links, palette::kWithoutLinks, 1.2);
   draw_path(canvas, plan, view.estimate, palette::kEstimate, 1.8);
   draw_key_frames(canvas, plan, view.key_frames);
+  draw_links(canvas, plan, view.links);
   const slam::Trajectory& marked = view.truth.empty() ? view.estimate : view.truth;
   if (!marked.empty()) {
     draw_place(canvas, plan, heading_of_camera(marked.back().T), "end", palette::kEnd, true);

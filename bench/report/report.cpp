@@ -82,6 +82,13 @@ std::string verdict(const RunHeader& header) {
          "</div>";
 }
 
+/// A run with an oracle is not a result of the SLAM, and says so before anything else.
+std::string experiment(const RunHeader& header) {
+  if (header.oracles.empty()) return "";
+  return "<div class=\"verdict error\"><strong>Experiment:</strong> exact answers in the place of " +
+         escape_html(header.oracles) + "; not a result of the SLAM.</div>";
+}
+
 std::string tiles(const RunFolder& run) {
   constexpr std::array<std::array<const char*, 2>, 8> kTiles = {
       {{"trajectory.ate_rmse_m", "position error (ATE)"},
@@ -131,9 +138,12 @@ std::string top_view_section(const RunFolder& run, const TopView& view) {
   save_figure(run, "top_view.png", image);
   const std::string truth = view.truth.empty() ? "No true trajectory is known."
                                                : "Black: the true trajectory, red: the estimated one.";
+  std::string links;
+  if (!view.links.empty()) links += " Violet: from where a place was seen first to where it was recognised.";
+  if (!view.without_links.empty()) links += " Orange: the estimate, had no place been recognised.";
   return figure(picture(image, kTopViewBytes, "Top view of trajectory and point cloud over the scene"),
                 "Top view of trajectory and point cloud.",
-                truth +
+                truth + links +
                     " Dots and segments: position and heading of key frames. Points are coloured by height; "
                     "uncertain ones are faint. (Paper: Fig. 3 simulated, Fig. 8 real.)");
 }
@@ -256,6 +266,19 @@ std::string time_plot(const RunFolder& run) {
                     : fmt::format("Stacked, mean of each {} pairs; the table below has the peaks.", stretch));
 }
 
+std::string memory_plot(const RunFolder& run) {
+  const auto& memory = run.frames.column("memory_mb");
+  if (memory.empty()) return "";
+  return figure(plot({.description = "Resident memory over time",
+                      .x_label = "time [s]",
+                      .y_label = "memory [MB]",
+                      .x = frame_times_s(run.frames),
+                      .series = {{"resident", "var(--s1)", memory}},
+                      .bands = {},
+                      .band_name = ""}),
+                "Memory.", "Of the whole process, simulator and renderer included.");
+}
+
 std::string page(const RunFolder& run) {
   const RunHeader& header = run.header;
   const PlacedRun place = placed(run);
@@ -269,15 +292,16 @@ std::string page(const RunFolder& run) {
   html += "<p class=\"kicker\">groundloop " + escape_html(header.version) + " · " + kind + "</p><h1>" + name +
           "</h1>";
   html += "<p class=\"summary\">" + escape_html(header.summary) + "</p>";
-  html += verdict(header) + tiles(run) + "</header>\n<main>";
+  html += experiment(header) + verdict(header) + tiles(run) + "</header>\n<main>";
   html += "<section><h2>What the cameras saw</h2>" + frame_section(run) + "</section>\n";
   html += "<section><h2>Trajectory and cloud</h2>" + top_view_section(run, place.view) + "</section>\n";
   html += "<section><h2>Occupancy map</h2>" + map_section(run, place) + "</section>\n";
   if (header.kind == "run") html += "<section><h2>Scene and plan</h2>" + scene_section(run) + "</section>\n";
   html += "<section><h2>Over time</h2>" + error_plots(run, place.view) + count_plot(run) + time_plot(run) +
+          memory_plot(run) + "</section>\n";
+  html += "<section><h2>Numbers</h2>" + expectation_table(header) + oracle_table(run.oracles) +
+          "<div class=\"tables\">" + metric_tables(run.metrics) + "</div>" + stage_table(run.frames) +
           "</section>\n";
-  html += "<section><h2>Numbers</h2>" + expectation_table(header) + "<div class=\"tables\">" +
-          metric_tables(run.metrics) + "</div>" + stage_table(run.frames) + "</section>\n";
   html += "<section><h2>Where it comes from</h2>" + provenance_table(header) + "</section></main>\n";
   html +=
       "<footer>Made by groundloop from the run folder alone. Figures correspond to those of the paper that "

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <set>
 #include <vector>
 
 #include "bench/report/html.h"
@@ -66,6 +67,9 @@ const std::map<std::string, std::string>& meanings() {
       {"trajectory.length_m", "length of the true path"},
       {"trajectory.lost_frames", "frames without a pose from vision"},
       {"trajectory.completeness", "part of the frames with a pose from vision"},
+      {"tracking.interruptions", "losses of track, and being carried away"},
+      {"tracking.relocalised_s", "longest time until the pose was right again"},
+      {"tracking.silent_jumps", "steps that the camera did not make, unannounced"},
       {"map.f1", "harmonic mean of precision and recall of occupied cells"},
       {"map.iou", "intersection over union of occupied cells"},
       {"map.mcc", "Matthews correlation of occupied and free"},
@@ -83,6 +87,8 @@ const std::map<std::string, std::string>& meanings() {
       {"stage.point_rmse_m", "triangulated points against the scene"},
       {"stage.registration_trans_m", "registered motion against the true one"},
       {"stage.registration_rot_deg", "registered rotation against the true one"},
+      {"uncertainty.nees_mean", "squared error by covariance of key-frame motions; honest: 6"},
+      {"uncertainty.nees_samples", "key-frame motions that it is the mean of"},
       {"loop.precision", "part of the closed loops that are real"},
       {"loop.recall", "part of the real loops that were closed"},
       {"loop.ate_before_m", "position error before loops are closed"},
@@ -122,6 +128,14 @@ std::string key_value_row(const std::string& key, const std::string& value) {
          "</code></td></tr>";
 }
 
+/// By how much a value differs from the first run's, in small print; empty for the first run itself.
+std::string change_text(const OracleRow& first, const OracleRow& row, const std::string& name) {
+  const auto base = first.metrics.find(name), value = row.metrics.find(name);
+  if (&row == &first || base == first.metrics.end() || value == row.metrics.end() || base->second == 0)
+    return "";
+  return fmt::format("<small>{:+.0f} %</small>", 100 * (value->second / base->second - 1));
+}
+
 }  // namespace
 
 std::string value_with_unit(const std::string& metric, double value, int digits) {
@@ -153,10 +167,40 @@ std::string expectation_table(const RunHeader& header) {
   return html + "</tbody></table></div>";
 }
 
+std::string oracle_table(const std::vector<OracleRow>& rows) {
+  if (rows.empty()) return "";
+  std::set<std::string> names;
+  for (const OracleRow& row : rows) {
+    for (const auto& [name, value] : row.metrics) names.insert(name);
+  }
+  std::string html =
+      "<div class=\"card wide\"><table><caption>Each stage's part of the error: the same run with exact "
+      "answers in its place</caption><thead><tr><th scope=\"col\">exact</th>";
+  for (const std::string& name : names) {
+    html += "<th scope=\"col\" class=\"n\"><code>" + escape_html(name) + "</code></th>";
+  }
+  html += "<th scope=\"col\">verdict</th></tr></thead><tbody>";
+  for (const OracleRow& row : rows) {
+    html += "<tr><th scope=\"row\">" + (row.exact.empty() ? "nothing" : escape_html(row.exact)) + "</th>";
+    for (const std::string& name : names) {
+      const auto found = row.metrics.find(name);
+      html += "<td class=\"n\">" + (found == row.metrics.end() ? "–" : value_with_unit(name, found->second)) +
+              change_text(rows.front(), row, name) + "</td>";
+    }
+    html += "<td>" + escape_html(row.outcome) + "</td></tr>";
+  }
+  return html + "</tbody></table></div>";
+}
+
 std::string metric_tables(const std::map<std::string, double>& metrics) {
-  const std::vector<std::pair<std::string, std::string>> groups = {
-      {"trajectory", "Trajectory"}, {"map", "Map"},       {"stage", "Stages against the truth"},
-      {"loop", "Loop closing"},     {"timing", "Timing"}, {"", "Others"}};
+  const std::vector<std::pair<std::string, std::string>> groups = {{"trajectory", "Trajectory"},
+                                                                   {"tracking", "Interruptions"},
+                                                                   {"map", "Map"},
+                                                                   {"stage", "Stages against the truth"},
+                                                                   {"uncertainty", "Uncertainty"},
+                                                                   {"loop", "Loop closing"},
+                                                                   {"timing", "Timing"},
+                                                                   {"", "Others"}};
   std::map<std::string, std::map<std::string, double>> by_group;
   for (const auto& [name, value] : metrics) {
     std::string group = name.substr(0, name.find('.'));
@@ -217,6 +261,7 @@ std::string provenance_table(const RunHeader& header) {
   html += key_value_row("kind", header.kind);
   html += key_value_row("command", command);
   html += key_value_row("preset", header.preset);
+  html += key_value_row("exact stages", header.oracles);
   html += key_value_row("seed", std::to_string(header.seed));
   html += key_value_row("pairs", std::to_string(header.frames));
   html += key_value_row("instruction set", header.isa);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "bench/report/run_folder.h"
 
@@ -17,7 +18,11 @@ std::string judged_sentence(const JudgedMetric& judged);
 /// The scenario's expectations, one row each.
 std::string expectation_table(const RunHeader& header);
 
-/// All metrics, a table for each group (trajectory, map, stage, loop, timing, others).
+/// Each stage's part of the error: the run as it is, and runs with exact answers in place of stages. Empty
+/// without rows.
+std::string oracle_table(const std::vector<OracleRow>& rows);
+
+/// All metrics, a table for each group (trajectory, tracking, map, stage, uncertainty, loop, timing, others).
 std::string metric_tables(const std::map<std::string, double>& metrics);
 
 /// Median, percentiles, maximum and share of each stage, or empty when frames.csv has no stage times.

@@ -57,6 +57,7 @@ RunHeader header_of(const json& run) {
   header.seed = run.value("seed", uint64_t{0});
   header.kind = run.value("kind", header.kind);
   header.preset = run.value("preset", "");
+  header.oracles = run.value("oracles", "");
   header.frames = run.value("frames", int64_t{0});
   if (run.contains("renderer") && run["renderer"].is_object()) header.renderer = texts_of(run["renderer"]);
   if (run.contains("isa")) header.isa = text_of(run["isa"]);
@@ -77,6 +78,15 @@ std::map<std::string, double> metrics_of(const json& flat) {
     if (!value.is_null()) metrics[name] = value.get<double>();
   }
   return metrics;
+}
+
+std::vector<OracleRow> oracles_of(const json& rows) {
+  std::vector<OracleRow> oracles;
+  for (const json& row : rows) {
+    oracles.push_back({row.at("exact").get<std::string>(), row.at("outcome").get<std::string>(),
+                       metrics_of(row.at("metrics"))});
+  }
+  return oracles;
 }
 
 slam::Pose alignment_of(const json& alignment) {
@@ -114,6 +124,11 @@ RunFolder load_run_folder(const std::string& dir) {
   };
   if (has("truth.tum")) run.truth = tum("truth.tum");
   if (has("estimate.tum")) run.estimate = tum("estimate.tum");
+  if (has("without_links.tum")) run.without_links = tum("without_links.tum");
+  if (has("links.csv")) run.links = read_links(path("links.csv"));
+  if (has("oracles.json")) {
+    run.oracles = with_file(path("oracles.json"), "a list of {exact, outcome, metrics}", oracles_of);
+  }
   if (has("keyframes.csv")) run.key_frames = read_key_frames(path("keyframes.csv"));
   if (has("frames.csv")) run.frames = read_frame_table(path("frames.csv"));
   if (has("metrics.json"))

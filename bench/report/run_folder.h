@@ -34,6 +34,7 @@ struct RunHeader {
   uint64_t seed = 0;
   std::string kind = "run";  ///< "run": simulated, judged in the world frame; "replay": recorded images
   std::string preset;
+  std::string oracles;  ///< stages replaced by exact answers ("tracking+stereo"); empty in every ordinary run
   int64_t frames = 0;
   std::map<std::string, std::string> renderer;  ///< backend, renderer, version, samples
   std::string isa;
@@ -43,12 +44,28 @@ struct RunHeader {
   std::vector<std::string> argv;              ///< command that made the run; may be empty
 };
 
-/// keyframes.csv: index,stamp_ns,segment,x,y,z,qx,qy,qz,qw (left camera in map)
+/// keyframes.csv: index,stamp_ns,segment,x,y,z,qx,qy,qz,qw (left camera in map), then the upper triangle of
+/// the covariance of the motion from the key frame before (c00, c01 .. c55), which the report does not need
 struct KeyFrameRow {
   int64_t index = 0;
   int64_t stamp_ns = 0;
   int segment = 0;
   slam::Pose T_map_left = slam::Pose::Identity();
+};
+
+/// links.csv: kind,from_index,to_index,x,y,z,qx,qy,qz,qw,inliers,residual_px,overlap,error_m,error_deg,right
+/// (the last four are empty without a truth). What the report needs of it:
+struct LinkRow {
+  int64_t from_index = 0;
+  int64_t to_index = 0;
+  bool wrong = false;  ///< by the truth
+};
+
+/// One run of oracles.json: [{"exact", "outcome", "metrics": {name: number}}]
+struct OracleRow {
+  std::string exact;  ///< stages with exact answers; empty: the run as it is
+  std::string outcome;
+  std::map<std::string, double> metrics;
 };
 
 /// frames.csv: a header row, then one row a frame. Columns are found by name and may be missing; cells may be
@@ -64,8 +81,11 @@ struct FrameTable {
 struct RunFolder {
   std::string dir;
   RunHeader header;
-  slam::Trajectory truth;     ///< truth.tum: left camera in world; seconds x y z qx qy qz qw
-  slam::Trajectory estimate;  ///< estimate.tum: left camera in map
+  slam::Trajectory truth;          ///< truth.tum: left camera in world; seconds x y z qx qy qz qw
+  slam::Trajectory estimate;       ///< estimate.tum: left camera in map
+  slam::Trajectory without_links;  ///< without_links.tum: the estimate had no place been recognised
+  std::vector<LinkRow> links;
+  std::vector<OracleRow> oracles;
   std::vector<KeyFrameRow> key_frames;
   FrameTable frames;
   std::map<std::string, double> metrics;        ///< metrics.json; a null is left out

@@ -16,6 +16,19 @@ slam::Trajectory moved(const slam::Pose& T_frame_from, const slam::Trajectory& t
   return result;
 }
 
+/// Links between the positions of their frames on the final trajectory; frame k is its k-th pose.
+std::vector<DrawnLink> links_of(const RunFolder& run, const slam::Trajectory& estimate) {
+  const auto frames = static_cast<int64_t>(estimate.size());
+  std::vector<DrawnLink> links;
+  for (const LinkRow& row : run.links) {
+    if (row.from_index < 0 || row.to_index < 0 || row.from_index >= frames || row.to_index >= frames)
+      continue;
+    const auto position = [&](int64_t i) { return estimate[static_cast<size_t>(i)].T.translation(); };
+    links.push_back({position(row.from_index), position(row.to_index), row.wrong});
+  }
+  return links;
+}
+
 }  // namespace
 
 PlacedRun placed(const RunFolder& run) {
@@ -29,6 +42,8 @@ PlacedRun placed(const RunFolder& run) {
     result.view.truth = moved(run.T_world_map->inverse(), run.truth);
   }
   result.view.estimate = moved(result.T_frame_map, run.estimate);
+  result.view.without_links = moved(result.T_frame_map, run.without_links);
+  result.view.links = links_of(run, result.view.estimate);
   for (const KeyFrameRow& row : run.key_frames) {
     result.view.key_frames.push_back(result.T_frame_map * row.T_map_left);
   }

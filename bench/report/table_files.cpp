@@ -115,11 +115,30 @@ std::vector<KeyFrameRow> read_key_frames(const std::string& file) {
     if (line.empty()) continue;
     const Place place{file, number};
     const auto cells = cells_of(line);
-    if (cells.size() != 10) {
-      throw InputError(Problem{file, number, "", line, "10 cells: index,stamp_ns,segment,x,y,z,qx,qy,qz,qw"});
+    if (cells.size() < 10) {
+      throw InputError(
+          Problem{file, number, "", line, "at least 10 cells: index,stamp_ns,segment,x,y,z,qx,qy,qz,qw"});
     }
     rows.push_back({parse_int(cells[0], place, "index"), parse_int(cells[1], place, "stamp_ns"),
                     static_cast<int>(parse_int(cells[2], place, "segment")), parse_pose(cells, 3, place)});
+  }
+  return rows;
+}
+
+std::vector<LinkRow> read_links(const std::string& file) {
+  std::ifstream in = open_file(file);
+  std::vector<LinkRow> rows;
+  std::string line;
+  next_line(in, line);  // header
+  for (int number = 2; next_line(in, line); ++number) {
+    if (line.empty()) continue;
+    const Place place{file, number};
+    const auto cells = cells_of(line);
+    if (cells.size() != 16) {
+      throw InputError(Problem{file, number, "", line, "16 cells: kind,from_index,to_index, ... ,right"});
+    }
+    rows.push_back(
+        {parse_int(cells[1], place, "from_index"), parse_int(cells[2], place, "to_index"), cells[15] == "0"});
   }
   return rows;
 }

@@ -7,10 +7,11 @@
 
 namespace groundloop::bench {
 
-// Readers of the run folder's tables. Both throw InputError with file, line, column, value and what was
+// Readers of the run folder's tables. All throw InputError with file, line, column, value and what was
 // wanted.
 
 FrameTable read_frame_table(const std::string& file);
 std::vector<KeyFrameRow> read_key_frames(const std::string& file);
+std::vector<LinkRow> read_links(const std::string& file);
 
 }  // namespace groundloop::bench

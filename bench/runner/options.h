@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "sim/scenario/scenario.h"
+#include "slam/types/oracle.h"
 
 namespace groundloop::bench {
 
@@ -17,17 +19,35 @@ struct SeedRange {
   uint64_t last = 1;
 };
 
+/// Stages whose work is replaced by exact answers; none in every ordinary run.
+using OracleStages = std::set<slam::OracleStage>;
+
+/// "tracking+stereo"; empty when nothing is replaced.
+std::string name_of(const OracleStages& stages);
+
 /// What `groundloop run` was asked for.
 struct RunOptions {
   std::vector<std::string> scenarios;  ///< scenario files, at least one
   std::optional<SeedRange> seeds;      ///< in place of each scenario's own seed
   std::optional<int64_t> frames;       ///< only the first so many pairs
   std::vector<sim::Override> set;      ///< `--set key=value`, in order
+  OracleStages oracles;                ///< `--oracle stage`
   std::string
       out;  ///< run folder of a single run, parent of the run folders of several; empty: runs/NAME-SEED
   std::string junit;  ///< JUnit XML file to write; empty: none
   int jobs = 1;       ///< runs at the same time, at least 1
   bool json = false;  ///< the answer as JSON on stdout
+};
+
+/// What `groundloop oracles` was asked for.
+struct OracleStudyOptions {
+  std::string scenario;
+  std::optional<uint64_t> seed;    ///< in place of the scenario's
+  std::optional<int64_t> frames;   ///< only the first so many pairs
+  std::vector<sim::Override> set;  ///< `--set key=value`, in order
+  std::string out;                 ///< parent of the run folders; empty: runs/NAME-SEED-oracles
+  int jobs = 1;                    ///< runs at the same time, at least 1
+  bool json = false;               ///< the answer as JSON on stdout
 };
 
 /// What `groundloop replay` was asked for.

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 #include <openssl/evp.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <array>
 #include <fstream>
-#include <sstream>
+#include <limits>
 #include <memory>
+#include <sstream>
 
 namespace groundloop::bench {
 
@@ -52,6 +54,13 @@ std::string instruction_set() {
 #else
   return "baseline";
 #endif
+}
+
+double memory_mb() {
+  std::ifstream in("/proc/self/statm");
+  int64_t all_pages = 0, resident_pages = 0;
+  if (!(in >> all_pages >> resident_pages)) return std::numeric_limits<double>::quiet_NaN();
+  return static_cast<double>(resident_pages) * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1024 * 1024);
 }
 
 double peak_memory_mb() {

@@ -14,6 +14,9 @@ std::string sha256_of_text(const std::string& text);
 /// renderer choose between ("x86-64 avx2 fma").
 std::string instruction_set();
 
+/// Resident memory of this process now [MiB].
+double memory_mb();
+
 /// Largest resident memory of this process so far [MiB].
 double peak_memory_mb();
 

@@ -93,18 +93,22 @@ RunOutcome replay(const ReplayOptions& options, const JobControl& control) {
   slam::Pipeline core(source->rig(), core_options);
   const int64_t frames = std::min(options.frames.value_or(INT64_MAX), source->size().value_or(INT64_MAX));
   FigureRecorder figures(source->rig(), frames == INT64_MAX ? 0 : frames);
+  std::vector<double> memory;
   const auto observe = [&](const slam::StereoFrame& frame, const slam::FrameResult& result) {
     figures.observe(frame, result, core);
+    memory.push_back(memory_mb());
   };
   const CoreRun core_run = run_core(*source, core, name, options.frames, observe, control);
 
-  RunOutcome outcome{name, 0, folder, 0, {}, {}};
+  RunOutcome outcome{name, 0, folder, 0, {}, {}, {}};
   Metrics& metrics = outcome.metrics;
   std::vector<slam::TrackingStatus> statuses;
   for (const slam::FrameResult& frame : core_run.frames) statuses.push_back(frame.status);
   metrics = tracking_metrics(statuses);
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  std::vector<FrameNotes> notes(core_run.frames.size(), {kUnknown, kUnknown, kUnknown, kUnknown, ""});
+  std::vector<FrameNotes> notes(core_run.frames.size(),
+                                {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, ""});
+  for (size_t i = 0; i < notes.size(); ++i) notes[i].memory_mb = memory[i];
   const RecordedTruth truth = find_truth(options, core.trajectory());
   std::optional<slam::Pose> T_world_map;
   if (!truth.poses.empty()) {
@@ -124,6 +128,10 @@ RunOutcome replay(const ReplayOptions& options, const JobControl& control) {
   if (!truth.poses.empty()) write_tum(out.file("truth.tum"), truth.poses);
   if (T_world_map) write_alignment_json(out.file("alignment.json"), *T_world_map);
   write_core_files(out, core);
+  std::vector<JudgedLink> links;
+  for (const slam::LoopLink& link : core.links())
+    links.push_back({link, kUnknown, kUnknown, kUnknown, false});
+  if (!links.empty()) write_links_csv(out.file("links.csv"), links);
   write_frames_csv(out.file("frames.csv"), core_run.frames, notes);
   write_metrics_json(out.file("metrics.json"), metrics);
   figures.write(out.file("figures"));

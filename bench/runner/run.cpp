@@ -2,20 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
 #include <thread>
+#include <type_traits>
 
-#include "bench/metrics/alignment.h"
 #include "bench/metrics/trajectory_file.h"
-#include "bench/metrics/trajectory_metrics.h"
-#include "bench/metrics/truth/map_score.h"
-#include "bench/metrics/truth/stage_judge.h"
 #include "bench/report/report.h"
 #include "bench/runner/core_files.h"
 #include "bench/runner/core_run.h"
@@ -26,83 +23,22 @@
 #include "bench/runner/provenance.h"
 #include "bench/runner/run_files.h"
 #include "bench/runner/run_header.h"
+#include "bench/runner/run_judge.h"
 #include "bench/runner/simulated_source.h"
 #include "bench/runner/slam_options.h"
 #include "bench/runner/timing_metrics.h"
+#include "bench/runner/truth_oracle.h"
 #include "sim/generate/realize.h"
-#include "sim/truth/truth_world.h"
 #include "slam/mapping/atomic_file.h"
 #include "slam/mapping/map_io.h"
-#include "slam/mapping/mapper.h"
 
 namespace groundloop::bench {
 namespace {
-
-constexpr double kSight_m = 8.0;    // how far a cell may be to count as seen
-constexpr int64_t kSightEvery = 5;  // frames between the poses whose sight is cast
 
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-slam::Trajectory left_truth(const SimulatedSource& source, size_t frames) {
-  slam::Trajectory truth;
-  for (size_t i = 0; i < frames; ++i) {
-    const FrameTruth& t = source.truth(static_cast<int64_t>(i));
-    truth.push_back({t.stamp_ns, t.T_world_left});
-  }
-  return truth;
-}
-
-/// Exact map, and what the true trajectory could see of it (sim::TruthWorld::visible_cells).
-struct ExactMap {
-  slam::OccupancyMap map;
-  std::vector<uint8_t> sight;
-};
-
-/// Gathers what the true trajectory could see while the run goes on.
-class ExactMapper {
- public:
-  ExactMapper(const SceneInTime& scene, const slam::StereoRig& rig, double cell_m)
-      : scene_(scene), rig_(rig) {
-    exact_.map = scene.standing().occupancy(scene.standing().bounds(cell_m), kBandMin_m, kBandMax_m);
-    exact_.sight.assign(exact_.map.geometry.cells(), 0);
-  }
-
-  /// Furniture was moved: a cell that has changed counts from when it is seen again.
-  void look_again() {
-    const slam::OccupancyMap before = exact_.map;
-    exact_.map = scene_.standing().occupancy(before.geometry, kBandMin_m, kBandMax_m);
-    for (size_t i = 0; i < exact_.sight.size(); ++i) {
-      if (exact_.map.value[i] != before.value[i]) exact_.sight[i] = 0;
-    }
-  }
-
-  void look(int64_t frame, const slam::Pose& T_world_left) {
-    if (frame % kSightEvery != 0) return;
-    const std::vector<uint8_t> seen = scene_.seen().visible_cells(exact_.map.geometry, rig_, {T_world_left},
-                                                                  kBandMin_m, kBandMax_m, kSight_m);
-    for (size_t i = 0; i < seen.size(); ++i) exact_.sight[i] = std::max(exact_.sight[i], seen[i]);
-  }
-
-  const ExactMap& exact() const { return exact_; }
-
- private:
-  const SceneInTime& scene_;
-  slam::StereoRig rig_;
-  ExactMap exact_;
-};
-
-/// The ceiling of the mapper: the same points at true poses, so that its errors and the localizer's separate.
-slam::OccupancyMap map_at_true_poses(const slam::Pipeline& core, const slam::StereoRig& rig,
-                                     const slam::Trajectory& truth) {
-  slam::Mapper mapper(rig, core.options().mapping);
-  for (const slam::KeyFrameRecord& k : core.key_frames()) {
-    mapper.add(truth[static_cast<size_t>(k.index)].T, k.observations);
-  }
-  return mapper.grid().map();
 }
 
 void write_truth(const OutputFolder& out, const ExactMap& exact, const sim::TruthWorld& world) {
@@ -122,14 +58,15 @@ std::string sha256_of_world(const sim::Scenario& scenario) {
   return generated ? sha256_of_text(*generated) : sha256_of_file(scenario.world.file);
 }
 
-RunHeader header_of(const sim::Scenario& scenario, const Metrics& metrics, const Verdict& verdict,
+RunHeader header_of(const sim::Scenario& scenario, const RunOutcome& outcome,
                     const sim::RendererInfo& renderer) {
-  RunHeader header = run_header(verdict);
+  RunHeader header = run_header(outcome.verdict);
   header.name = scenario.name;
   header.summary = scenario.summary;
   header.seed = scenario.seed;
   header.kind = "run";
   header.preset = scenario.slam.preset;
+  header.oracles = name_of(outcome.oracles);
   header.renderer = {{"backend", renderer.backend},
                      {"renderer", renderer.renderer},
                      {"version", renderer.version},
@@ -138,86 +75,105 @@ RunHeader header_of(const sim::Scenario& scenario, const Metrics& metrics, const
                    {"world", sha256_of_world(scenario)},
                    {"robot", sha256_of_file(scenario.robot.model)},
                    {"head", sha256_of_file(scenario.head.model)}};
-  header.judged = judged_metrics(scenario.expect, metrics, verdict);
+  header.judged = judged_metrics(scenario.expect, outcome.metrics, outcome.verdict);
   return header;
+}
+
+void write_motion(const OutputFolder& out, const SimulatedSource& source, const RunJudgement& judged) {
+  slam::Trajectory odometry;
+  for (size_t i = 0; i < judged.truth.size(); ++i) {
+    odometry.push_back({judged.truth[i].stamp_ns, source.truth(static_cast<int64_t>(i)).T_odom_body});
+  }
+  write_tum(out.file("truth.tum"), judged.truth);
+  write_tum(out.file("odometry.tum"), odometry);
+  write_alignment_json(out.file("alignment.json"), judged.T_world_map);
+  if (!judged.links.empty()) write_links_csv(out.file("links.csv"), judged.links);
+  if (!judged.without_links.empty()) write_tum(out.file("without_links.tum"), judged.without_links);
+}
+
+/// The core as it is, or with stages replaced by exact answers.
+template <class Core>
+std::unique_ptr<Core> make_core(const slam::StereoRig& rig, const slam::SlamOptions& options,
+                                const slam::Oracle* oracle) {
+  if constexpr (std::is_constructible_v<Core, slam::StereoRig, slam::SlamOptions, const slam::Oracle*>) {
+    return std::make_unique<Core>(rig, options, oracle);
+  } else {
+    if (oracle != nullptr) throw std::logic_error("this core takes no oracle");
+    return std::make_unique<Core>(rig, options);
+  }
 }
 
 }  // namespace
 
-RunOutcome run_scenario(const sim::Scenario& asked, std::optional<int64_t> frames,
-                        const std::string& folder, const JobControl& control) {
+std::string name_of(const OracleStages& stages) {
+  std::string text;
+  for (const auto& [stage, name] : EnumNames<slam::OracleStage>::names) {
+    if (stages.contains(stage)) text += (text.empty() ? "" : "+") + std::string(name);
+  }
+  return text;
+}
+
+std::string RunOutcome::title() const {
+  return oracles.empty() ? name : fmt::format("{} (exact {})", name, name_of(oracles));
+}
+
+RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   const Clock::time_point start = Clock::now();
-  const sim::Scenario scenario = sim::realized(asked);
+  const sim::Scenario scenario = sim::realized(job.scenario);
   const slam::SlamOptions options = slam_options(scenario);
   const sim::HeadModel head = sim::load_head(scenario.head.model);
   const sim::World world = sim::World::load(scenario);
-  SimulatedSource source(scenario, world, head, frames);
-  const slam::StereoRig rig = source.rig();
-  OutputFolder out(folder);
+  SimulatedSource source(scenario, world, head, job.frames);
+  OutputFolder out(job.folder);
 
   // drive, see, process
-  slam::Pipeline core(rig, options);
   SceneInTime scene(world, scenario);
-  const sim::TruthWorld& truth_world = scene.standing();
-  StageJudge stages(scene.seen(), rig);
-  ExactMapper exact_mapper(scene, rig, options.mapping.cell_m);
-  FigureRecorder figures(rig, *source.size());
+  const sim::TruthWorld still = exact_scene(world);
+  const TruthOracle oracle(job.oracles, still, source.rig(),
+                           [&source](int64_t frame) { return source.truth(frame).T_world_seen; });
+  const auto core = make_core<slam::Pipeline>(source.rig(), options, job.oracles.empty() ? nullptr : &oracle);
+  RunJudge judge(scene, source, *core);
+  FigureRecorder figures(source.rig(), *source.size());
   std::vector<FrameNotes> notes;
-  std::vector<double> render_ms;
   const auto observe = [&](const slam::StereoFrame& frame, const slam::FrameResult& result) {
     const FrameTruth& truth = source.truth(frame.index);
-    if (scene.move_to(static_cast<double>(truth.seen_ns) * 1e-9)) exact_mapper.look_again();
-    const StageErrors errors = stages.judge(result, truth.T_world_seen);
+    const StageErrors errors = judge.observe(frame, result);
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    notes.push_back({truth.render_ms, errors.disparity_px.rmse().value_or(kUnknown),
-                     errors.track_px.rmse().value_or(kUnknown), kUnknown, truth.faults});
-    render_ms.push_back(truth.render_ms);
-    exact_mapper.look(frame.index, truth.T_world_seen);
-    figures.observe(frame, result, core);
+    notes.push_back({.render_ms = truth.render_ms,
+                     .disparity_error_px = errors.disparity_px.rmse().value_or(kUnknown),
+                     .track_error_px = errors.track_px.rmse().value_or(kUnknown),
+                     .position_error_m = kUnknown,
+                     .memory_mb = memory_mb(),
+                     .faults = truth.faults});
+    figures.observe(frame, result, *core);
   };
-  const std::string name = fmt::format("{}-{}", scenario.name, scenario.seed);
-  const CoreRun core_run = run_core(source, core, name, std::nullopt, observe, control);
+  RunOutcome outcome{scenario.name, scenario.seed, job.folder, 0, {}, {}, job.oracles};
+  const std::string name = fmt::format("{}-{}", outcome.title(), scenario.seed);
+  const CoreRun core_run = run_core(source, *core, name, std::nullopt, observe, control);
 
   // compare with the truth
-  RunOutcome outcome{scenario.name, scenario.seed, folder, 0, {}, {}};
-  Metrics& metrics = outcome.metrics;
-  const slam::Trajectory truth = left_truth(source, core_run.frames.size());
-  PosePairs pairs{truth, core.trajectory()};
-  metrics = trajectory_metrics(pairs);
-  std::vector<slam::TrackingStatus> statuses;
-  for (const slam::FrameResult& frame : core_run.frames) statuses.push_back(frame.status);
-  metrics.merge(tracking_metrics(statuses));
-  metrics.merge(stages.total().metrics());
-  const slam::Pose T_world_map = align(pairs, AlignMode::kSe3).T_truth_map;
-  for (size_t i = 0; i < pairs.size(); ++i) {
-    notes[i].position_error_m = (pairs.truth[i].T.translation() - pairs.estimate[i].T.translation()).norm();
+  const RunJudgement judged = judge.judge(core_run.frames);
+  std::vector<double> render_ms;
+  for (size_t i = 0; i < notes.size(); ++i) {
+    notes[i].position_error_m = judged.position_error_m[i];
+    render_ms.push_back(notes[i].render_ms);
   }
-  const ExactMap& exact = exact_mapper.exact();
-  metrics.merge(map_metrics(score_map(exact.map, exact.sight, core.map(), T_world_map)));
-  const MapScore ceiling =
-      score_map(exact.map, exact.sight, map_at_true_poses(core, rig, truth), slam::Pose::Identity());
-  if (ceiling.f1()) metrics["map.with_true_poses.f1"] = *ceiling.f1();
+  outcome.metrics = judged.metrics;
   outcome.wall_s = seconds_since(start);
-  metrics.merge(timing_metrics(core_run.frames, render_ms, outcome.wall_s));
-  outcome.verdict = judge(scenario.expect, metrics);
+  outcome.metrics.merge(timing_metrics(core_run.frames, render_ms, outcome.wall_s));
+  outcome.verdict = bench::judge(scenario.expect, outcome.metrics);
 
   // write it down
-  slam::Trajectory odometry;
-  for (size_t i = 0; i < truth.size(); ++i) {
-    odometry.push_back({truth[i].stamp_ns, source.truth(static_cast<int64_t>(i)).T_odom_body});
-  }
   slam::write_file_atomically(out.file("scenario.yaml"),
                               [&](std::ostream& text) { text << sim::to_yaml(scenario); });
-  write_tum(out.file("truth.tum"), truth);
-  write_tum(out.file("odometry.tum"), odometry);
-  write_core_files(out, core);
-  write_truth(out, exact, truth_world);
-  write_alignment_json(out.file("alignment.json"), T_world_map);
+  write_motion(out, source, judged);
+  write_core_files(out, *core);
+  write_truth(out, judge.exact_map(), scene.standing());
   write_frames_csv(out.file("frames.csv"), core_run.frames, notes);
-  write_metrics_json(out.file("metrics.json"), metrics);
+  write_metrics_json(out.file("metrics.json"), outcome.metrics);
   figures.write(out.file("figures"));
-  cv::imwrite(out.file("figures/preview.png"), preview_picture(truth_world, source.simulation()));
-  RunHeader header = header_of(scenario, metrics, outcome.verdict, source.renderer_info());
+  cv::imwrite(out.file("figures/preview.png"), preview_picture(scene.standing(), source.simulation()));
+  RunHeader header = header_of(scenario, outcome, source.renderer_info());
   header.frames = static_cast<int64_t>(core_run.frames.size());
   write_run_json(out.file("run.json"), header);
   write_report(out.path());
@@ -245,7 +201,19 @@ std::vector<RunOutcome> run(const RunOptions& options, const JobControl& control
   }
   if (!problems.empty()) throw InputError(problems);
 
-  std::vector<RunOutcome> outcomes(scenarios.size());
+  std::vector<RunJob> jobs;
+  for (const sim::Scenario& scenario : scenarios) {
+    std::string name = fmt::format("{}-{}", scenario.name, scenario.seed);
+    if (!options.oracles.empty()) name += "-exact-" + name_of(options.oracles);
+    std::string folder = options.out.empty() ? "runs/" + name : options.out;
+    if (!options.out.empty() && scenarios.size() > 1) folder += "/" + name;
+    jobs.push_back({scenario, options.frames, options.oracles, folder});
+  }
+  return run_all(jobs, options.jobs, control);
+}
+
+std::vector<RunOutcome> run_all(const std::vector<RunJob>& jobs, int at_once, const JobControl& control) {
+  std::vector<RunOutcome> outcomes(jobs.size());
   std::atomic<size_t> next = 0;
   std::mutex progress_mutex;
   JobControl shared = control;
@@ -256,22 +224,22 @@ std::vector<RunOutcome> run(const RunOptions& options, const JobControl& control
     };
   }
   const auto work = [&] {
-    for (size_t i = next++; i < scenarios.size(); i = next++) {
-      const sim::Scenario& scenario = scenarios[i];
-      const std::string name = fmt::format("{}-{}", scenario.name, scenario.seed);
-      std::string folder = options.out.empty() ? "runs/" + name : options.out;
-      if (!options.out.empty() && scenarios.size() > 1) folder += "/" + name;
+    for (size_t i = next++; i < jobs.size(); i = next++) {
+      const RunJob& job = jobs[i];
+      const auto failed = [&job](const Verdict& verdict) {
+        return RunOutcome{job.scenario.name, job.scenario.seed, "", 0, {}, verdict, job.oracles};
+      };
       try {
-        outcomes[i] = run_scenario(scenario, options.frames, folder, shared);
+        outcomes[i] = run_scenario(job, shared);
       } catch (const InputError& error) {
-        outcomes[i] = {scenario.name, scenario.seed, "", 0, {}, bad_input(error)};
+        outcomes[i] = failed(bad_input(error));
       } catch (const std::exception& error) {
-        outcomes[i] = {scenario.name, scenario.seed, "", 0, {}, internal_error(error.what())};
+        outcomes[i] = failed(internal_error(error.what()));
       }
     }
   };
   std::vector<std::thread> workers;
-  for (int j = 1; j < options.jobs; ++j) workers.emplace_back(work);
+  for (int j = 1; j < at_once; ++j) workers.emplace_back(work);
   work();
   for (std::thread& worker : workers) worker.join();
   if (control.stop != nullptr && control.stop->load()) throw Interrupted();

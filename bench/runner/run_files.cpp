@@ -25,6 +25,13 @@ Json or_null(const std::optional<double>& value) { return value ? Json(*value) :
 /// A number that reads back exactly; an empty cell where it is not one.
 std::string cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
+/// x,y,z,qx,qy,qz,qw
+std::string pose_cells(const slam::Pose& T) {
+  const Eigen::Vector3d t = T.translation();
+  const Eigen::Quaterniond q(T.linear());
+  return fmt::format("{},{},{},{},{},{},{}", t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+}
+
 }  // namespace
 
 void write_run_json(const std::string& file, const RunHeader& header) {
@@ -35,6 +42,7 @@ void write_run_json(const std::string& file, const RunHeader& header) {
   json["seed"] = header.seed;
   json["kind"] = header.kind;
   json["preset"] = header.preset;
+  if (!header.oracles.empty()) json["oracles"] = header.oracles;
   json["frames"] = header.frames;
   json["renderer"] = header.renderer;
   json["isa"] = header.isa;
@@ -62,15 +70,16 @@ void write_frames_csv(const std::string& file, const std::vector<slam::FrameResu
     for (size_t s = 0; s < slam::kStageCount; ++s) {
       out << "," << slam::name_of(static_cast<slam::Stage>(s)) << "_ms";
     }
-    out << ",total_ms,render_ms,disparity_error_px,track_error_px,position_error_m,faults,state_hash\n";
+    out << ",total_ms,render_ms,memory_mb,disparity_error_px,track_error_px,position_error_m,faults,state_"
+           "hash\n";
     for (size_t i = 0; i < frames.size(); ++i) {
       const slam::FrameResult& f = frames[i];
       fmt::print(out, "{},{},{},{},{:d},{},{},{}", f.index, f.stamp_ns, slam::name_of(f.status), f.segment,
                  f.is_key_frame, f.features_tracked, f.inliers, f.residual_px);
       for (const double ms : f.stage_ms) fmt::print(out, ",{:.3f}", ms);
       const FrameNotes& n = notes[i];
-      fmt::print(out, ",{:.3f},{},{},{},{},{},{:016x}\n", f.total_ms,
-                 std::isfinite(n.render_ms) ? fmt::format("{:.3f}", n.render_ms) : "",
+      fmt::print(out, ",{:.3f},{},{:.1f},{},{},{},{},{:016x}\n", f.total_ms,
+                 std::isfinite(n.render_ms) ? fmt::format("{:.3f}", n.render_ms) : "", n.memory_mb,
                  cell(n.disparity_error_px), cell(n.track_error_px), cell(n.position_error_m), n.faults,
                  f.state_hash);
     }
@@ -79,12 +88,31 @@ void write_frames_csv(const std::string& file, const std::vector<slam::FrameResu
 
 void write_key_frames_csv(const std::string& file, const std::vector<slam::KeyFrameRecord>& key_frames) {
   slam::write_file_atomically(file, [&](std::ostream& out) {
-    out << "index,stamp_ns,segment,x,y,z,qx,qy,qz,qw\n";
+    out << "index,stamp_ns,segment,x,y,z,qx,qy,qz,qw";
+    for (int row = 0; row < 6; ++row) {
+      for (int col = row; col < 6; ++col) fmt::print(out, ",c{}{}", row, col);
+    }
+    out << "\n";
     for (const slam::KeyFrameRecord& k : key_frames) {
-      const Eigen::Vector3d t = k.T_map_left.translation();
-      const Eigen::Quaterniond q(k.T_map_left.linear());
-      fmt::print(out, "{},{},{},{},{},{},{},{},{},{}\n", k.index, k.stamp_ns, k.segment, t.x(), t.y(), t.z(),
-                 q.x(), q.y(), q.z(), q.w());
+      fmt::print(out, "{},{},{},{}", k.index, k.stamp_ns, k.segment, pose_cells(k.T_map_left));
+      for (int row = 0; row < 6; ++row) {
+        for (int col = row; col < 6; ++col) fmt::print(out, ",{}", k.covariance(row, col));
+      }
+      out << "\n";
+    }
+  });
+}
+
+void write_links_csv(const std::string& file, const std::vector<JudgedLink>& links) {
+  slam::write_file_atomically(file, [&](std::ostream& out) {
+    out << "kind,from_index,to_index,x,y,z,qx,qy,qz,qw,inliers,residual_px,overlap,error_m,error_deg,right\n";
+    for (const JudgedLink& judged : links) {
+      const slam::LoopLink& l = judged.link;
+      fmt::print(out, "{},{},{},{},{},{},{},{},{},{}\n",
+                 l.kind == slam::LinkKind::kLandmarks ? "landmarks" : "map", l.from_index, l.to_index,
+                 pose_cells(l.T_from_to), l.inliers, l.residual_px, cell(judged.overlap),
+                 cell(judged.error_m), cell(judged.error_deg),
+                 std::isfinite(judged.error_m) ? (judged.right ? "1" : "0") : "");
     }
   });
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bench/metrics/metrics.h"
+#include "bench/metrics/truth/loop_truth.h"
 #include "bench/report/footprint.h"
 #include "bench/report/run_folder.h"
 #include "slam/pipeline/pipeline.h"
@@ -16,6 +17,7 @@ struct FrameNotes {
   double disparity_error_px;
   double track_error_px;
   double position_error_m;
+  double memory_mb;  ///< resident after this frame
   std::string faults;  ///< kinds active since the frame before, as "drop+blur"; empty when all was well
 };
 
@@ -27,6 +29,8 @@ void write_metrics_json(const std::string& file, const Metrics& metrics);
 void write_frames_csv(const std::string& file, const std::vector<slam::FrameResult>& frames,
                       const std::vector<FrameNotes>& notes);
 void write_key_frames_csv(const std::string& file, const std::vector<slam::KeyFrameRecord>& key_frames);
+/// Links in the order in which they entered, beside the truth; NaN where there is none.
+void write_links_csv(const std::string& file, const std::vector<JudgedLink>& links);
 void write_cloud_ply(const std::string& file, const std::vector<slam::CloudPoint>& cloud);
 /// {"T_world_map": [16 numbers, row by row]}
 void write_alignment_json(const std::string& file, const slam::Pose& T_world_map);

@@ -11,7 +11,8 @@ namespace groundloop::bench {
 /// True pose of the left camera of a frame that was delivered; may be called by several threads.
 using TruePoses = std::function<slam::Pose(int64_t frame)>;
 
-/// Answers the core's questions from the exact scene, which must stand still.
+/// Answers the core's questions from the exact scene. It stands still: people are not seen, moved furniture
+/// stays where it was.
 class TruthOracle : public slam::Oracle {
  public:
   /// @param stages  to be replaced

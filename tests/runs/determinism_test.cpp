@@ -21,12 +21,12 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-bool is_timing_column(const std::string& name) { return name.ends_with("_ms"); }
+bool is_timing_column(const std::string& name) { return name.ends_with("_ms") || name == "memory_mb"; }
 bool is_timing_metric(const std::string& name) {
   return name.starts_with("timing.") || name == "peak_memory_mb";
 }
 
-/// frames.csv without the columns of milliseconds.
+/// frames.csv without the columns of milliseconds and megabytes.
 std::string frames_without_timings(const fs::path& file) {
   const std::vector<std::string> lines = lines_of(file);
   const std::vector<std::string> names = cells_of(lines.at(0));

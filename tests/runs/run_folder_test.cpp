@@ -69,6 +69,8 @@ TEST(RunFolder, IsCompleteAndAgreesWithItself) {
                            "stage.track_rmse_px",
                            "stage.track_outlier_fraction",
                            "stage.point_rmse_m",
+                           "tracking.interruptions",
+                           "tracking.silent_jumps",
                            "timing.render_ms",
                            "timing.slam_ms_median",
                            "timing.slam_ms_p99",
@@ -80,6 +82,10 @@ TEST(RunFolder, IsCompleteAndAgreesWithItself) {
     EXPECT_TRUE(metrics[name].is_number()) << name;
   }
   EXPECT_EQ(metrics["trajectory.lost_frames"], 0);
+  EXPECT_EQ(metrics["tracking.interruptions"], 0);
+  EXPECT_FALSE(metrics.contains("tracking.relocalised_s"));
+  EXPECT_FALSE(metrics.contains("loop.precision"));  // no links, and nothing is seen again
+  EXPECT_FALSE(metrics.contains("loop.recall"));
   EXPECT_EQ(metrics["trajectory.completeness"], 1);
   EXPECT_LT(metrics["trajectory.ate_rmse_m"], 0.02);
   EXPECT_NEAR(metrics["trajectory.length_m"], 0.21, 0.03);  // 11 intervals at 7.5 Hz and up to 0.18 m/s
@@ -87,6 +93,7 @@ TEST(RunFolder, IsCompleteAndAgreesWithItself) {
 
   const json header = json::parse(text_of(folder + "/run.json"));
   EXPECT_EQ(header["name"], "smoke");
+  EXPECT_FALSE(header.contains("oracles"));
   EXPECT_EQ(header["seed"], 1);
   EXPECT_EQ(header["frames"], 12);
   EXPECT_EQ(header["verdict"]["result"], "pass");

@@ -31,6 +31,17 @@ TEST(Seeds, AnythingElseIsRefused) {
   }
 }
 
+TEST(Stages, AreNamed) {
+  EXPECT_TRUE(parse_stages({}).empty());
+  EXPECT_EQ(parse_stages({"stereo", "tracking"}),
+            (OracleStages{slam::OracleStage::kTracking, slam::OracleStage::kStereo}));
+  EXPECT_EQ(name_of(parse_stages({"stereo", "tracking"})), "tracking+stereo");
+  EXPECT_EQ(message_of([] {
+              parse_stages({"tracking", "depth"});
+            }),
+            "--oracle: depth: wanted one of: tracking, stereo, motion, loops");
+}
+
 TEST(Override, SplitsAtTheFirstEqualsSign) {
   EXPECT_EQ(parse_override("plan.speed_mps=0.3").key, "plan.speed_mps");
   EXPECT_EQ(parse_override("plan.speed_mps=0.3").value, "0.3");

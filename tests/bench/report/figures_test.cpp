@@ -109,6 +109,26 @@ TEST(DrawTopView, ShowsTheEstimateWhereItIs) {
   EXPECT_NEAR(bottom, middle, 3);
 }
 
+TEST(DrawTopView, DrawsLinksFromPlaceToPlace) {
+  TopView view;
+  view.outline = {{"floor", {{0, 0}, {10, 0}, {10, 6}, {0, 6}}}};
+  const auto coloured = [&view](Colour colour) {
+    const cv::Mat image = draw_top_view(view);
+    int pixels = 0;
+    for (int v = 0; v < image.rows - 60; ++v) {
+      for (int u = 0; u < image.cols; ++u) pixels += is_near(image.at<cv::Vec3b>(v, u), colour.bgr(), 40);
+    }
+    return pixels;
+  };
+  EXPECT_EQ(coloured(palette::kLink), 0);
+  view.links = {{{1, 3, 0}, {9, 3, 0}, false}};
+  EXPECT_GT(coloured(palette::kLink), 900);  // 8 of the 10 m that fill 1400 px
+  EXPECT_EQ(coloured(palette::kEstimate), 0);
+  view.links[0].wrong = true;
+  EXPECT_GT(coloured(palette::kEstimate), 900);
+  EXPECT_EQ(coloured(palette::kLink), 0);
+}
+
 TEST(DrawTopView, IsTheSameTwiceAndNeedsNothing) {
   TopView view;
   EXPECT_EQ(draw_top_view(view).cols, 1600);

@@ -43,7 +43,7 @@ TEST(Report, OfACompleteRunShowsEverything) {
   EXPECT_EQ(count(html, "<img "), 6U);
   EXPECT_EQ(count(html, "<img "), count(html, "src=\"data:image/"));
   EXPECT_EQ(count(html, "<img "), count(html, " alt=\""));
-  EXPECT_EQ(count(html, "<svg "), 4U);
+  EXPECT_EQ(count(html, "<svg "), 5U);
   for (const char* figure : {"Fig. 1", "Fig. 2", "Fig. 3", "Fig. 4", "Fig. 5"})
     EXPECT_THAT(html, HasSubstr(figure));
   EXPECT_THAT(html, Not(HasSubstr("class=\"note\"")));
@@ -57,6 +57,42 @@ TEST(Report, OfACompleteRunShowsEverything) {
     EXPECT_NE(entry.path().extension(), ".partial");
   }
   EXPECT_EQ(read(write_report(folder.path())), html) << "an old run reported again";
+}
+
+TEST(Report, ShowsLinksAndWhatTheyChanged) {
+  const TemporaryFolder folder;
+  SyntheticRun::write(folder.path());
+  EXPECT_THAT(read(write_report(folder.path())), Not(HasSubstr("Violet")));
+  SyntheticRun::add_links(folder.path());
+  const std::string html = read(write_report(folder.path()));
+  EXPECT_THAT(html, HasSubstr("Violet: from where a place was seen first"));
+  EXPECT_THAT(html, HasSubstr("Orange: the estimate, had no place been recognised."));
+  const PlacedRun place = placed(load_run_folder(folder.path()));
+  ASSERT_EQ(place.view.links.size(), 3U);
+  const Eigen::Vector3d raised(0, 0, SyntheticRun::kError_m);
+  EXPECT_TRUE(place.view.links[0].to.isApprox(SyntheticRun::T_world_left(250).translation() + raised, 1e-9));
+  EXPECT_TRUE(place.view.links[2].wrong);
+}
+
+TEST(Report, OfAStudyShowsEachStagesPart) {
+  const TemporaryFolder folder;
+  SyntheticRun::write(folder.path());
+  EXPECT_THAT(read(write_report(folder.path())), Not(HasSubstr("Each stage's part")));
+  SyntheticRun::add_oracles(folder.path());
+  const std::string html = read(write_report(folder.path()));
+  EXPECT_THAT(html, HasSubstr("Each stage's part of the error"));
+  EXPECT_THAT(html, HasSubstr("<td class=\"n\">0.1\u00a0m<small>-60 %</small></td><td>pass</td>"));
+}
+
+TEST(Report, OfARunWithAnOracleSaysSoFirst) {
+  const TemporaryFolder folder;
+  std::string run = synthetic_run_json("pass");
+  run.replace(run.find("\"preset\""), 0, "\"oracles\": \"tracking+stereo\", ");
+  write_text(folder.path() + "/run.json", run);
+  const std::string html = read(write_report(folder.path()));
+  const size_t said = html.find("exact answers in the place of tracking+stereo; not a result of the SLAM");
+  ASSERT_NE(said, std::string::npos);
+  EXPECT_LT(said, html.find("Pass:"));
 }
 
 TEST(Report, OfABareRunSaysWhatIsMissing) {

@@ -62,6 +62,24 @@ TEST(RunFolder, GivesBackWhatWasWritten) {
   EXPECT_EQ(run.outline[4].polygon[2], Eigen::Vector2d(6.8, 4.4));
 }
 
+TEST(RunFolder, ReadsLinksAndOracles) {
+  const TemporaryFolder folder;
+  SyntheticRun::write(folder.path());
+  SyntheticRun::add_links(folder.path());
+  SyntheticRun::add_oracles(folder.path());
+  const RunFolder run = load_run_folder(folder.path());
+  ASSERT_EQ(run.links.size(), 3U);
+  EXPECT_EQ(run.links[1].from_index, 8);
+  EXPECT_EQ(run.links[1].to_index, 258);
+  EXPECT_FALSE(run.links[1].wrong);
+  EXPECT_TRUE(run.links[2].wrong);
+  EXPECT_EQ(run.without_links.size(), static_cast<size_t>(SyntheticRun::kFrames));
+  ASSERT_EQ(run.oracles.size(), 2U);
+  EXPECT_EQ(run.oracles[1].exact, "tracking");
+  EXPECT_EQ(run.oracles[1].outcome, "pass");
+  EXPECT_EQ(run.oracles[1].metrics.at("trajectory.ate_rmse_m"), 0.1);
+}
+
 TEST(RunFolder, NeedsOnlyRunJson) {
   const TemporaryFolder folder;
   write_text(folder.path() + "/run.json", R"({"name": "bare", "verdict": {"result": "error"}})");
@@ -100,6 +118,13 @@ TEST(RunFolder, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(message_of(folder.path()), HasSubstr("keyframes.csv:2: qx qy qz qw: wanted a unit quaternion"));
 
   std::filesystem::remove(folder.path() + "/keyframes.csv");
+  write_text(folder.path() + "/links.csv", "kind\nlandmarks,1,2\n");
+  EXPECT_THAT(message_of(folder.path()), HasSubstr("links.csv:2: landmarks,1,2: wanted 16 cells"));
+  std::filesystem::remove(folder.path() + "/links.csv");
+  write_text(folder.path() + "/oracles.json", R"([{"exact": "tracking"}])");
+  EXPECT_THAT(message_of(folder.path()),
+              AllOf(HasSubstr("oracles.json"), HasSubstr("a list of {exact, outcome, metrics}")));
+  std::filesystem::remove(folder.path() + "/oracles.json");
   write_text(folder.path() + "/alignment.json", R"({"T_world_map": [1, 2]})");
   EXPECT_THAT(message_of(folder.path()),
               AllOf(HasSubstr("alignment.json"), HasSubstr("T_world_map: 16 numbers")));

@@ -63,8 +63,8 @@ void write_tables(const std::string& dir) {
   std::string frames =
       "index,stamp_ns,status,segment,is_key_frame,features_tracked,inliers,residual_px,pyramid_ms,tracking_"
       "ms,"
-      "registration_ms,detection_ms,disparity_ms,stereo_ms,mapping_ms,loop_ms,total_ms,render_ms,state_"
-      "hash\n";
+      "registration_ms,detection_ms,disparity_ms,stereo_ms,mapping_ms,loop_ms,total_ms,render_ms,memory_mb,"
+      "state_hash\n";
   for (int i = 0; i < SyntheticRun::kFrames; ++i) {
     const int64_t stamp_ns = SyntheticRun::stamp_ns(i);
     const slam::Pose T_map_left = SyntheticRun::T_map_left(i);
@@ -73,10 +73,10 @@ void write_tables(const std::string& dir) {
     const bool key = i % 6 == 0, lost = i >= SyntheticRun::kLostFrom && i < SyntheticRun::kLostTo;
     const double wave = 20 * std::sin(i * 0.05) + 12 * spread(static_cast<uint64_t>(i));
     const double k = key ? 1 : 0, s = 0.2 * spread(1000 + static_cast<uint64_t>(i));
-    frames += fmt::format("{},{},{},0,{},{:.0f},{:.0f},0.31,{},{},{},{},{},{},{},0,{},55.5,{:016x}\n", i,
+    frames += fmt::format("{},{},{},0,{},{:.0f},{:.0f},0.31,{},{},{},{},{},{},{},0,{},55.5,{},{:016x}\n", i,
                           stamp_ns, lost ? "lost" : "tracking", key ? 1 : 0, 260 + wave,
                           lost ? 3 : 215 + wave, 0.8 + s, 2.5 + s, 0.9 + s, 3 * k, 6 * k, 1.5 * k, 2.5 * k,
-                          4.2 + 3 * s + 13 * k, 0xabcdef0000ULL + i);
+                          4.2 + 3 * s + 13 * k, 200 + 0.1 * std::min(i, 150), 0xabcdef0000ULL + i);
     if (!key) continue;
     const Eigen::Quaterniond q(T_map_left.linear());
     const auto& t = T_map_left.translation();
@@ -218,6 +218,29 @@ std::string synthetic_run_json(const std::string& result, const std::string& nam
 {{"metric": "trajectory.ate_rmse_m", "value": 0.25, "min": null, "max": 0.15, "ok": {}}},
 {{"metric": "map.f1", "value": 0.87, "min": 0.6, "max": null, "ok": true}}]}}}})",
       name, SyntheticRun::kFrames, result, result == "pass");
+}
+
+void SyntheticRun::add_links(const std::string& dir) {
+  write_text(
+      dir + "/links.csv",
+      "kind,from_index,to_index,x,y,z,qx,qy,qz,qw,inliers,residual_px,overlap,error_m,error_deg,right\n"
+      "landmarks,0,250,0,0,0,0,0,0,1,80,0.4,0.9,0.01,0.1,1\n"
+      "map,8,258,0,0,0,0,0,0,1,80,0,0.9,0.01,0.1,1\n"
+      "landmarks,20,150,0,0,0,0,0,0,1,15,0.9,0,4.5,90,0\n");
+  slam::Trajectory without_links;
+  for (int i = 0; i < kFrames; ++i) {
+    slam::Pose T = T_map_left(i);
+    T.translation().x() += 0.4;
+    without_links.push_back({stamp_ns(i), T});
+  }
+  write_tum(dir + "/without_links.tum", without_links);
+}
+
+void SyntheticRun::add_oracles(const std::string& dir) {
+  write_text(
+      dir + "/oracles.json",
+      R"([{"exact": "", "outcome": "fell short", "metrics": {"trajectory.ate_rmse_m": 0.25, "map.f1": 0.87}},
+{"exact": "tracking", "outcome": "pass", "metrics": {"trajectory.ate_rmse_m": 0.1}}])");
 }
 
 void SyntheticRun::write(const std::string& dir) {

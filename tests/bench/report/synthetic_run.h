@@ -41,6 +41,10 @@ struct SyntheticRun {
 
   /// Writes the whole folder.
   static void write(const std::string& dir);
+  /// Adds two right links and a wrong one, and the trajectory without them, 0.4 m to the side.
+  static void add_links(const std::string& dir);
+  /// Adds a study with one row beside the run as it is.
+  static void add_oracles(const std::string& dir);
 };
 
 /// The run.json of the synthetic run, for tests that change it.

@@ -1,0 +1,122 @@
+#include "bench/runner/run_judge.h"
+
+#include <utility>
+
+#include "bench/metrics/alignment.h"
+#include "bench/metrics/correction.h"
+#include "bench/metrics/trajectory_metrics.h"
+#include "bench/metrics/truth/map_score.h"
+#include "bench/metrics/uncertainty.h"
+#include "slam/mapping/mapper.h"
+
+namespace groundloop::bench {
+namespace {
+
+/// The ceiling of the mapper: the same points at true poses, so that its errors and the localizer's separate.
+slam::OccupancyMap map_at_true_poses(const slam::Pipeline& core, const SimulatedSource& source) {
+  slam::Mapper mapper(source.rig(), core.options().mapping);
+  for (const slam::KeyFrameRecord& k : core.key_frames()) {
+    mapper.add(source.truth(k.index).T_world_left, k.observations);
+  }
+  return mapper.grid().map();
+}
+
+slam::Trajectory left_truth(const SimulatedSource& source, size_t frames) {
+  slam::Trajectory truth;
+  truth.reserve(frames);
+  for (size_t i = 0; i < frames; ++i) {
+    const FrameTruth& t = source.truth(static_cast<int64_t>(i));
+    truth.push_back({t.stamp_ns, t.T_world_left});
+  }
+  return truth;
+}
+
+}  // namespace
+
+RunJudge::RunJudge(SceneInTime& scene, const SimulatedSource& source, const slam::Pipeline& core)
+    : scene_(scene),
+      source_(source),
+      core_(core),
+      sight_(scene.standing(), source.rig()),
+      stages_(scene.seen(), source.rig()),
+      exact_(scene, source.rig(), core.options().mapping.cell_m) {}
+
+StageErrors RunJudge::observe(const slam::StereoFrame& frame, const slam::FrameResult& result) {
+  const FrameTruth& truth = source_.truth(frame.index);
+  if (scene_.move_to(static_cast<double>(truth.seen_ns) * 1e-9)) exact_.look_again();
+  exact_.look(frame.index, truth.T_world_seen);
+  recovery_.observe({result, frame.T_previous_left, truth.T_world_left}, [this] { return mapped_views(); });
+  return stages_.judge(result, truth.T_world_seen);
+}
+
+RunJudgement RunJudge::judge(const std::vector<slam::FrameResult>& frames) const {
+  RunJudgement run;
+  run.truth = left_truth(source_, frames.size());
+  PosePairs pairs{run.truth, core_.trajectory()};
+  run.metrics = trajectory_metrics(pairs);
+  std::vector<slam::TrackingStatus> statuses;
+  for (const slam::FrameResult& frame : frames) statuses.push_back(frame.status);
+  run.metrics.merge(tracking_metrics(statuses));
+  run.metrics.merge(recovery_.metrics());
+  run.metrics.merge(stages_.total().metrics());
+  run.metrics.merge(uncertainty());
+
+  run.without_links = without_links(frames, core_.trajectory());
+  run.metrics.merge(correction_metrics(run.truth, run.without_links, core_.trajectory()));
+  LoopScore score = loops();
+  run.metrics.merge(score.metrics());
+  run.links = std::move(score.links);
+
+  run.T_world_map = align(pairs, AlignMode::kSe3).T_truth_map;
+  for (size_t i = 0; i < pairs.size(); ++i) {
+    run.position_error_m.push_back(
+        (pairs.truth[i].T.translation() - pairs.estimate[i].T.translation()).norm());
+  }
+  run.metrics.merge(map_metrics_at(run.T_world_map));
+  return run;
+}
+
+Metrics RunJudge::map_metrics_at(const slam::Pose& T_world_map) const {
+  const ExactMap& exact = exact_.exact();
+  Metrics metrics = map_metrics(score_map(exact.map, exact.sight, core_.map(), T_world_map));
+  const MapScore ceiling =
+      score_map(exact.map, exact.sight, map_at_true_poses(core_, source_), slam::Pose::Identity());
+  if (ceiling.f1()) metrics["map.with_true_poses.f1"] = *ceiling.f1();
+  return metrics;
+}
+
+LoopScore RunJudge::loops() const {
+  std::vector<TrueView> key_frames;
+  for (const slam::KeyFrameRecord& k : core_.key_frames()) {
+    key_frames.push_back({k.index, T_world_seen(k.index)});
+  }
+  std::vector<JudgedLink> links;
+  for (const slam::LoopLink& link : core_.links()) {
+    links.push_back(judge_link(sight_, link, T_world_seen(link.from_index), T_world_seen(link.to_index)));
+  }
+  return score_loops(key_frames, true_revisits(sight_, key_frames), std::move(links));
+}
+
+/// Motions from key frame to key frame of one segment, with the covariances that the map keeps of them.
+Metrics RunJudge::uncertainty() const {
+  NeesSum sum;
+  const std::vector<slam::KeyFrameRecord>& key_frames = core_.key_frames();
+  for (size_t i = 1; i < key_frames.size(); ++i) {
+    const slam::KeyFrameRecord& before = key_frames[i - 1];
+    const slam::KeyFrameRecord& now = key_frames[i];
+    if (before.segment != now.segment) continue;
+    sum.add(nees(before.T_map_left.inverse() * now.T_map_left, now.covariance,
+                 T_world_seen(before.index).inverse() * T_world_seen(now.index)));
+  }
+  return sum.metrics();
+}
+
+std::vector<MappedView> RunJudge::mapped_views() const {
+  std::vector<MappedView> views;
+  for (const slam::KeyFrameRecord& k : core_.key_frames()) {
+    views.push_back({k.index, k.T_map_left, source_.truth(k.index).T_world_left});
+  }
+  return views;
+}
+
+}  // namespace groundloop::bench
