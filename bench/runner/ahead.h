@@ -17,8 +17,11 @@ class Ahead {
  public:
   /// @param make   gives the next thing, none at the end; called, and destroyed, in the thread
   /// @param depth  things made ahead at most
-  explicit Ahead(std::function<std::optional<T>()> make, size_t depth = 4)
-      : depth_(depth), thread_([this, mine = std::move(make)]() mutable { produce(std::move(mine)); }) {}
+  /// @param release  makes a make() that waits for something return, so that the thread can end
+  explicit Ahead(std::function<std::optional<T>()> make, size_t depth = 4, std::function<void()> release = {})
+      : depth_(depth),
+        release_(std::move(release)),
+        thread_([this, mine = std::move(make)]() mutable { produce(std::move(mine)); }) {}
 
   /// Stops after the thing in the making.
   ~Ahead() {
@@ -27,6 +30,7 @@ class Ahead {
       stopped_ = true;
     }
     changed_.notify_all();
+    if (release_) release_();
     thread_.join();
   }
   Ahead(const Ahead&) = delete;
@@ -72,6 +76,7 @@ class Ahead {
   }
 
   const size_t depth_;
+  const std::function<void()> release_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<T> ready_;

@@ -21,9 +21,11 @@ using FrameObserver = std::function<void(const slam::StereoFrame&, const slam::F
 
 /// Feeds a source to the core until it ends or `frames` pairs are done. The source runs
 /// ahead in a thread of its own; core and observers run here.
+/// @param release  makes a source that waits for results of the core return
 /// @throws Interrupted when the job is stopped
 CoreRun run_core(slam::StereoSource& source, slam::Pipeline& core, const std::string& name,
-                 std::optional<int64_t> frames, const FrameObserver& observe, const JobControl& control);
+                 std::optional<int64_t> frames, const FrameObserver& observe, const JobControl& control,
+                 const std::function<void()>& release = {});
 
 /// Thrown when a job was stopped before its end (Ctrl-C).
 class Interrupted : public std::runtime_error {

@@ -136,6 +136,7 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   FigureRecorder figures(source.rig(), *source.size());
   std::vector<FrameNotes> notes;
   const auto observe = [&](const slam::StereoFrame& frame, const slam::FrameResult& result) {
+    source.steer_by(result);
     const FrameTruth& truth = source.truth(frame.index);
     const StageErrors errors = judge.observe(frame, result);
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -149,7 +150,8 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   };
   RunOutcome outcome{scenario.name, scenario.seed, job.folder, 0, {}, {}, job.oracles};
   const std::string name = fmt::format("{}-{}", outcome.title(), scenario.seed);
-  const CoreRun core_run = run_core(source, *core, name, std::nullopt, observe, control);
+  const CoreRun core_run =
+      run_core(source, *core, name, std::nullopt, observe, control, [&source] { source.abandon(); });
 
   // compare with the truth
   const RunJudgement judged = judge.judge(core_run.frames);

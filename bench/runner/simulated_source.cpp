@@ -15,13 +15,26 @@ SimulatedSource::SimulatedSource(const sim::Scenario& scenario, const sim::World
       world_(world),
       head_(head),
       rig_(head.rig()),
-      simulation_(world, head, scenario),
+      simulation_(world, head, scenario, [this](int64_t exposure) { return pose_of_exposure(exposure); }),
       arrivals_(sim::arrivals(scenario.faults, scenario.seed, simulation_.exposures(), head.period_ns())),
       size_(std::min(frames.value_or(INT64_MAX), static_cast<int64_t>(arrivals_.size()))),
       truth_(static_cast<size_t>(size_)) {
   if (size_ > 0) return;
   throw InputError(Problem{scenario.file, scenario.faults.empty() ? 0 : scenario.faults.front().line,
                            "faults", "no pair arrives", "faults that let at least one pair through"});
+}
+
+void SimulatedSource::steer_by(const slam::FrameResult& result) {
+  const bool known = result.status != slam::TrackingStatus::kLost;
+  poses_.put(known ? std::optional(result.T_map_left) : std::nullopt);
+}
+
+std::optional<slam::Pose> SimulatedSource::pose_of_exposure(int64_t exposure) {
+  const auto arrival =
+      std::lower_bound(arrivals_.begin(), arrivals_.end(), exposure,
+                       [](const sim::Arrival& a, int64_t index) { return a.exposure < index; });
+  if (arrival == arrivals_.end() || arrival->exposure != exposure) return std::nullopt;
+  return poses_.wait(arrival - arrivals_.begin());
 }
 
 std::optional<sim::Exposure> SimulatedSource::expose() {

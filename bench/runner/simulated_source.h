@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/runner/ahead.h"
+#include "bench/runner/pose_channel.h"
 #include "sim/faults/arrivals.h"
 #include "sim/head/head.h"
 #include "sim/render/renderer.h"
@@ -14,6 +15,7 @@
 #include "sim/simulation/simulation.h"
 #include "sim/world/world.h"
 #include "slam/source/stereo_source.h"
+#include "slam/types/frame_result.h"
 
 namespace groundloop::bench {
 
@@ -42,11 +44,18 @@ class SimulatedSource : public slam::StereoSource {
   /// @throws InputError when the scenario's models do not fit together or its plan runs into something
   SimulatedSource(const sim::Scenario& scenario, const sim::World& world, const sim::HeadModel& head,
                   std::optional<int64_t> frames);
+  ~SimulatedSource() override { abandon(); }
 
   const slam::StereoRig& rig() const override { return rig_; }
   std::optional<int64_t> size() const override { return size_; }
-  /// All calls must come from one thread.
+  /// All calls must come from one thread. Under `feedback: slam` a pair may wait for the result of the pairs
+  /// before the last sim::kFeedbackPairs.
   std::optional<slam::StereoFrame> next() override;
+
+  /// What the core said of the next pair, in order: the robot may steer by it.
+  void steer_by(const slam::FrameResult& result);
+  /// There will be no more results: whoever waits for one goes on without.
+  void abandon() { poses_.close(); }
 
   /// Truth of pair `index`. May be read from another thread once that pair was delivered to it.
   const FrameTruth& truth(int64_t index) const { return truth_[static_cast<size_t>(index)]; }
@@ -55,6 +64,7 @@ class SimulatedSource : public slam::StereoSource {
   const sim::Simulation& simulation() const { return simulation_; }
 
  private:
+  std::optional<slam::Pose> pose_of_exposure(int64_t exposure);
   std::optional<sim::Exposure> expose();
   std::optional<slam::StereoFrame> make_pair(sim::Renderer& renderer);
   void render(const sim::Exposure& exposure, sim::Renderer& renderer, slam::StereoFrame& frame);
@@ -64,6 +74,7 @@ class SimulatedSource : public slam::StereoSource {
   const sim::World& world_;
   const sim::HeadModel& head_;
   const slam::StereoRig rig_;
+  PoseChannel poses_;
   sim::Simulation simulation_;
   const std::vector<sim::Arrival> arrivals_;
   const int64_t size_;

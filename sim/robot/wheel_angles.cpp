@@ -2,8 +2,9 @@
 
 namespace groundloop::sim {
 
-WheelFaults wheel_faults(const std::vector<Fault>& faults, double time_s) {
-  WheelFaults wheels;
+WheelFaults wheel_faults(const DriveErrors& errors, const std::vector<Fault>& faults, double time_s) {
+  const double e = errors.diameter_ratio;
+  WheelFaults wheels{{2 / (e + 1), 2 * e / (e + 1)}, {1, 1}};
   for (const Fault& fault : faults) {
     if (!fault.active(time_s)) continue;
     if (fault.wheel_slip) {

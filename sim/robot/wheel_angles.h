@@ -3,16 +3,17 @@
 #include <array>
 #include <vector>
 
-#include "sim/scenario/fault.h"
+#include "sim/scenario/scenario.h"
 
 namespace groundloop::sim {
 
-/// What slip and failing encoders do to the left and the right wheel at one time.
+/// What unequal wheels, slip and failing encoders do to the left and the right wheel at one time.
 struct WheelFaults {
   std::array<double, 2> grip = {1, 1};     ///< way over the floor by way turned
   std::array<double, 2> counted = {1, 1};  ///< part of the counts that reaches the odometry
 };
-WheelFaults wheel_faults(const std::vector<Fault>& faults, double time_s);
+/// A wheel of another diameter than the robot takes it for is one that always slips, or skids, by that much.
+WheelFaults wheel_faults(const DriveErrors& errors, const std::vector<Fault>& faults, double time_s);
 
 /// Angles [rad] of the driven wheels (0 left, 1 right), as far as the robot knows them. In the physics wheels
 /// roll and do not slip; a slipping wheel is one whose motor turns farther than it rolls. So slip has exactly

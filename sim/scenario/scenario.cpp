@@ -118,8 +118,8 @@ void apply_override(const Override& override_, Scenario& scenario, std::vector<P
 
 /// Makes a path absolute, relative to the scenario's folder; it must be an existing file (or folder).
 void resolve(std::string& path, const std::string& key, const YAML::Node& node, const Scenario& scenario,
-             const std::vector<Override>& overrides, const std::string& wanted, std::vector<Problem>& problems,
-             bool is_folder = false) {
+             const std::vector<Override>& overrides, const std::string& wanted,
+             std::vector<Problem>& problems, bool is_folder = false) {
   namespace fs = std::filesystem;
   if (path.empty()) return;  // reported as missing already
   const fs::path folder = fs::absolute(scenario.file).parent_path();
@@ -184,9 +184,6 @@ void Plan::check(ConfigReader& reader) const {
       reader.problem("segments", "missing", "a list, or `generate` in its place");
     }
   }
-  if (feedback == Feedback::kSlam) {
-    reader.problem("feedback", "one of: plan, odometry, truth (steering by SLAM is not supported yet)");
-  }
 }
 
 void RenderChoice::check(ConfigReader& reader) const {
@@ -204,6 +201,13 @@ void Expectations::check(ConfigReader& reader) const {
 }
 
 void Scenario::check(ConfigReader& reader) const {
+  const bool kidnapped =
+      std::any_of(faults.begin(), faults.end(), [](const Fault& f) { return f.kidnap.has_value(); });
+  if (kidnapped && plan.feedback == Feedback::kSlam) {
+    reader.problem(
+        "faults", "kidnap with feedback: slam",
+        "no kidnapping while SLAM steers: once it knows the place, it would drive straight back to its path");
+  }
   if (reader.has("format") && format != 1) reader.problem("format", "1, the only format this version reads");
   const auto usable = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == '.';
@@ -237,8 +241,8 @@ Scenario load_scenario(const std::string& file, const std::vector<Override>& ove
             scenario, overrides, "an MJCF file", problems);
   }
   if (scenario.plan.generate && scenario.robot.start.line != 0) {
-    problems.push_back({file, scenario.robot.start.line, "robot.start", "given",
-                        "no start: it is chosen by plan.generate"});
+    problems.push_back(
+        {file, scenario.robot.start.line, "robot.start", "given", "no start: it is chosen by plan.generate"});
   }
   if (!problems.empty()) throw InputError(tidied(std::move(problems)));
   return scenario;

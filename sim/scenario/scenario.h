@@ -10,8 +10,8 @@
 
 #include "sim/scenario/fault.h"
 #include "sim/scenario/metric_names.h"
-#include "sim/scenario/scenery.h"
 #include "sim/scenario/recipe.h"
+#include "sim/scenario/scenery.h"
 #include "slam/types/config.h"
 
 namespace groundloop::sim {
@@ -32,8 +32,21 @@ struct StartPose {
   }
 };
 
-/// How the wheel odometry errs (facts: UMBmark, Borenstein and Feng 1996). The simulated robot itself is
-/// exact; these ratios say by how much the odometry's idea of it is wrong.
+/// How the robot differs from what its wheel control and its odometry take it for (facts: UMBmark, Borenstein
+/// and Feng 1996): an open-loop drive bends, and the odometry does not see it.
+struct DriveErrors {
+  double diameter_ratio = 1;  ///< E_d: actual right over left wheel diameter, at the same mean
+  double track_ratio = 1;     ///< E_b: actual over assumed track
+
+  template <class Archive>
+  void visit(Archive& a) {
+    a("diameter_ratio", diameter_ratio, {.min = 0.5, .max = 2, .doc = "E_d: right over left wheel diameter"});
+    a("track_ratio", track_ratio, {.min = 0.5, .max = 2, .doc = "E_b: actual over assumed track"});
+  }
+};
+
+/// How the wheel odometry errs, beside what it shares with the drive: these ratios say by how much its own
+/// idea of the robot is wrong.
 struct OdometryModel {
   int counts_per_rev = 76600;  ///< encoder counts a wheel revolution
   double diameter_ratio =
@@ -69,12 +82,14 @@ struct WorldChoice {
 struct RobotChoice {
   std::string model;  ///< MJCF file, relative to the scenario file
   StartPose start;
+  DriveErrors drive;
   OdometryModel odometry;
 
   template <class Archive>
   void visit(Archive& a) {
     a("model", model, {.required = true, .doc = "MJCF file of the robot, relative to this file"});
     a("start", start, {.doc = "where the robot starts, in the world frame"});
+    a("drive", drive, {.doc = "how the robot differs from what it takes itself for"});
     a("odometry", odometry, {.doc = "errors of the wheel odometry"});
   }
 };
@@ -234,7 +249,8 @@ struct Scenario {
     a("name", name,
       {.required = true, .doc = "letters, digits, dot, dash, underscore: it names the run folder"});
     a("summary", summary, {.doc = "one line for lists and reports"});
-    a("world", world, {.required = true, .doc = "the scene: an MJCF file, relative to this file, or {generate: ..}"});
+    a("world", world,
+      {.required = true, .doc = "the scene: an MJCF file, relative to this file, or {generate: ..}"});
     a("robot", robot, {.required = true});
     a("head", head, {.required = true});
     a("plan", plan, {.required = true});

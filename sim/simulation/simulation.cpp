@@ -40,6 +40,13 @@ void update_kinematics(const mjModel& model, mjData& state) {
   mj_camlight(&model, &state);
 }
 
+/// The drive as plan, wheel control and odometry take it to be.
+Drive assumed_drive(const World& world, const RobotChoice& robot) {
+  Drive drive = find_drive(world, robot.model);
+  drive.limits.track_m /= robot.drive.track_ratio;
+  return drive;
+}
+
 int64_t step_ns_of(const mjModel& model, const Scenario& scenario) {
   if (model.opt.timestep > kLongestStep_s) {
     throw InputError(Problem{scenario.robot.model, 0, "option.timestep",
@@ -51,12 +58,13 @@ int64_t step_ns_of(const mjModel& model, const Scenario& scenario) {
 }  // namespace
 
 struct Simulation::Impl {
-  Impl(const World& world_, const HeadModel& head, const Scenario& scenario);
+  Impl(const World& world_, const HeadModel& head, const Scenario& scenario, PoseFeedback core_pose_);
 
   void check_path_after_moves(const Scenario& scenario);
   void settle();
   void step();
   Pose2 steering_pose() const;
+  void take_slam_pose(int64_t of_exposure);
   std::array<double, 2> rolled_rad(const mjData& data) const;
   std::shared_ptr<mjData> state_at(int64_t stamp_ns);
   Exposure expose();
@@ -67,7 +75,9 @@ struct Simulation::Impl {
   const mjModel& model;  ///< with everything where it is
   const Lighting lighting;
   const std::vector<Fault> faults;
+  const DriveErrors drive_errors;
   Feedback feedback;
+  const PoseFeedback core_pose;
   Pose2 T_world_start;
   std::string scenario_file;
   int start_line;
@@ -85,19 +95,25 @@ struct Simulation::Impl {
   Odometry odometry;
   int64_t steps = 0;
   int64_t next_exposure = 0;
-  slam::Pose T_world_expected_left;  ///< as planned, or as odometry says, at the last exposure
+  std::vector<Pose2> T_odom_body_at;  ///< by exposure
+  std::optional<Pose2> T_plan_map;    ///< the core's map in the plan's world
+  Pose2 T_plan_odom;                  ///< under feedback: slam
+  slam::Pose T_world_expected_left;   ///< as planned, or as odometry says, at the last exposure
 };
 
-Simulation::Impl::Impl(const World& world_, const HeadModel& head, const Scenario& scenario)
+Simulation::Impl::Impl(const World& world_, const HeadModel& head, const Scenario& scenario,
+                       PoseFeedback core_pose_)
     : world(world_),
       motion(world, scenario),
       model(motion.model()),
       lighting(model, scenario),
       faults(scenario.faults),
+      drive_errors(scenario.robot.drive),
       feedback(scenario.plan.feedback),
+      core_pose(std::move(core_pose_)),
       scenario_file(scenario.file),
       start_line(scenario.robot.start.line),
-      drive(find_drive(world, scenario.robot.model)),
+      drive(assumed_drive(world, scenario.robot)),
       path(scenario.robot.start, scenario.plan, drive.limits),
       T_body_left(head.rig().T_body_left),
       T_left_right(Eigen::Translation3d(head.baseline_m, 0, 0)),
@@ -120,6 +136,7 @@ Simulation::Impl::Impl(const World& world_, const HeadModel& head, const Scenari
   settle();
   const auto [left_rad, right_rad] = rolled_rad(*state);
   angles = WheelAngles({left_rad, right_rad});
+  T_plan_odom = T_world_start;
   wheels = WheelController(drive.limits, left_rad, right_rad);
   odometry = Odometry(scenario.robot.odometry, drive.limits, scenario.seed, left_rad, right_rad);
 }
@@ -155,7 +172,19 @@ void Simulation::Impl::settle() {
 /// Where the steering believes the robot is, in the plan's world.
 Pose2 Simulation::Impl::steering_pose() const {
   if (feedback == Feedback::kOdometry) return composed(T_world_start, odometry.T_odom_body());
+  if (feedback == Feedback::kSlam) return composed(T_plan_odom, odometry.T_odom_body());
   return composed(inverse(kidnapping.T_world_plan()), to_pose2(body_pose(world, *state)));
+}
+
+/// Lays the odometry where the core says that the robot was.
+void Simulation::Impl::take_slam_pose(int64_t of_exposure) {
+  if (of_exposure < 0) return;
+  const std::optional<slam::Pose> T_map_left = core_pose(of_exposure);
+  if (!T_map_left) return;
+  const Pose2 T_map_body = to_pose2(*T_map_left * T_body_left.inverse());
+  const Pose2& T_odom_body = T_odom_body_at[static_cast<size_t>(of_exposure)];
+  if (!T_plan_map) T_plan_map = composed(composed(T_plan_odom, T_odom_body), inverse(T_map_body));
+  T_plan_odom = composed(composed(*T_plan_map, T_map_body), inverse(T_odom_body));
 }
 
 void Simulation::Impl::step() {
@@ -167,7 +196,7 @@ void Simulation::Impl::step() {
   const BodyTwist wanted =
       feedback == Feedback::kPlan ? planned.twist : tracking_twist(planned, steering_pose());
   const WheelSpeeds speeds = wheels.command(wanted, angles.motor_rad(0), angles.motor_rad(1), step_s);
-  const WheelFaults wheel = wheel_faults(faults, time_s);
+  const WheelFaults wheel = wheel_faults(drive_errors, faults, time_s);
   state->ctrl[drive.left_actuator] = speeds.left_radps * wheel.grip[0];
   state->ctrl[drive.right_actuator] = speeds.right_radps * wheel.grip[1];
   focus.update(*state);
@@ -190,6 +219,7 @@ std::shared_ptr<mjData> Simulation::Impl::state_at(int64_t stamp_ns) {
 Exposure Simulation::Impl::expose() {
   Exposure exposure;
   exposure.index = next_exposure++;
+  if (feedback == Feedback::kSlam) take_slam_pose(exposure.index - 1 - kFeedbackPairs);
   exposure.stamp_ns = exposure.index * period_ns;
   while ((steps + 1) * step_ns <= exposure.stamp_ns) step();
   kidnapping.update(exposure.stamp_ns, *state);
@@ -217,10 +247,11 @@ void Simulation::Impl::tell_expected_motion(Exposure& exposure) {
   // copies read the encoders at the exposure
   const double time_s = static_cast<double>(exposure.stamp_ns) * 1e-9;
   WheelAngles angles_now = angles;
-  angles_now.update(rolled_rad(*exposure.state), wheel_faults(faults, time_s));
+  angles_now.update(rolled_rad(*exposure.state), wheel_faults(drive_errors, faults, time_s));
   Odometry reading = odometry;
   reading.update(angles_now.counted_rad(0), angles_now.counted_rad(1));
   exposure.T_odom_body = to_pose(reading.T_odom_body());
+  T_odom_body_at.push_back(reading.T_odom_body());
 
   const Pose2 planned = path.at(time_s).T_world_body;
   exposure.T_plan_body = to_pose(composed(kidnapping.T_world_plan(), planned));
@@ -232,8 +263,9 @@ void Simulation::Impl::tell_expected_motion(Exposure& exposure) {
   T_world_expected_left = T_world_left;
 }
 
-Simulation::Simulation(const World& world, const HeadModel& head, const Scenario& scenario)
-    : impl_(std::make_unique<Impl>(world, head, scenario)) {}
+Simulation::Simulation(const World& world, const HeadModel& head, const Scenario& scenario,
+                       PoseFeedback core_pose)
+    : impl_(std::make_unique<Impl>(world, head, scenario, std::move(core_pose))) {}
 Simulation::~Simulation() = default;
 
 std::optional<Exposure> Simulation::advance() {

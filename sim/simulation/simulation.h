@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -11,6 +12,9 @@
 #include "slam/types/pose.h"
 
 namespace groundloop::sim {
+
+/// Exposures that pass before a pose of the core acts on the wheels.
+inline constexpr int64_t kFeedbackPairs = 1;
 
 /// The state of the world at one exposure, with its truth.
 struct Exposure {
@@ -30,12 +34,20 @@ struct Exposure {
                                               ///< exposes at another time
 };
 
+/// Pose of the left camera in the map (slam::FrameResult::T_map_left) that the core found for the images of
+/// an exposure; waits until it is known. None when there is none: lost, or the pair did not arrive.
+using PoseFeedback = std::function<std::optional<slam::Pose>(int64_t exposure)>;
+
 /// Physics, controller and odometry: drives the plan and stops at every exposure.
 ///
 /// Time: exposure k is at k times the head's period exactly. Physics runs in the model's own steps whatever
 /// the head's rate, so the drive is the same for every head; an exposure between two steps continues the last
 /// step's velocities for the remainder, in a copy of the state. That copy is both what is rendered and what
 /// is true.
+///
+/// `feedback: slam`: on the way from exposure k - 1 to k the robot steers by the core's pose of exposure
+/// k - 1 - kFeedbackPairs and by what its odometry counted since, however fast or slow the core is. The map
+/// is laid on the plan by the first pose.
 ///
 /// Faults of the scenario that change what happens (slip, kidnapping, encoders, knocks, trigger) act here;
 /// those of images and their transport do not (sim/faults).
@@ -46,7 +58,9 @@ class Simulation {
  public:
   /// @throws InputError when the plan runs into something (names segment, place and geom) or the models do
   /// not fit
-  Simulation(const World& world, const HeadModel& head, const Scenario& scenario);
+  /// @param core_pose  needed to advance() under `feedback: slam`
+  Simulation(const World& world, const HeadModel& head, const Scenario& scenario,
+             PoseFeedback core_pose = {});
   ~Simulation();
 
   /// Advances to the next exposure; none when the plan is driven.

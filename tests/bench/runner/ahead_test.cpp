@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <future>
 #include <memory>
 #include <stdexcept>
 
@@ -86,6 +87,20 @@ TEST(Ahead, WhatTheMakerOwnsDiesInItsThread) {
   }
   EXPECT_EQ(made, died);
   EXPECT_NE(died, std::this_thread::get_id());
+}
+
+TEST(Ahead, AMakerThatWaitsIsReleasedAtTheEnd) {
+  std::promise<void> released;
+  std::future<void> wait = released.get_future();
+  {
+    Ahead<int> ahead(
+        [&]() -> std::optional<int> {
+          wait.wait();
+          return std::nullopt;
+        },
+        4, [&] { released.set_value(); });
+  }
+  SUCCEED() << "the thread has ended";
 }
 
 }  // namespace

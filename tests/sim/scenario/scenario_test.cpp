@@ -144,8 +144,8 @@ seed: -3
           "folder",
           "test.yaml:3: world: models/rome.xml: wanted an MJCF file that exists (looked for " +
               (folder_ / "models" / "rome.xml").string() + ")",
-          "test.yaml:4: robot.strat: unknown key: wanted one of: model, odometry, start (did you mean "
-          "start?)",
+          "test.yaml:4: robot.strat: unknown key: wanted one of: drive, model, odometry, start (did you "
+          "mean start?)",
           "test.yaml:7: plan.speed_mps: fast: wanted a number from 0.01 to 1.2",
           "test.yaml:8: plan.feedback: gps: wanted one of: plan, odometry, slam, truth",
           "test.yaml:10: plan.segments[0]: {straight_m: 2, stop_s: 1}: wanted exactly one of: straight_m, "
@@ -160,13 +160,10 @@ TEST_F(ScenarioFiles, WhatDoesNotExistYetIsRefusedClearly) {
   EXPECT_THAT(
       messages(kHead + R"(plan:
   speed_mps: 0.2
-  feedback: slam
   segments: [{look: {pan_deg: 30}}]
 )"),
       ElementsAre(
-          "test.yaml:8: plan.feedback: slam: wanted one of: plan, odometry, truth (steering by SLAM is "
-          "not supported yet)",
-          "test.yaml:9: plan.segments[0].look: {pan_deg: 30}: wanted no look segment: none of the robots "
+          "test.yaml:8: plan.segments[0].look: {pan_deg: 30}: wanted no look segment: none of the robots "
           "has a pan-tilt head yet"));
 }
 
@@ -195,6 +192,43 @@ TEST_F(ScenarioFiles, FaultsAreATimeline) {
   const Scenario replaced = load_scenario(write(kGood), {{"faults", "[{at_s: 1, drop: {}}]"}});
   ASSERT_EQ(replaced.faults.size(), 1U);
   EXPECT_EQ(replaced.faults[0].drop->probability, 1);
+}
+
+TEST_F(ScenarioFiles, WhoSteersBySlamIsNotKidnapped) {
+  EXPECT_THAT(
+      messages(kHead + R"(plan:
+  speed_mps: 0.2
+  feedback: slam
+  segments: [{straight_m: 1}]
+faults: [{at_s: 1, kidnap: {x_m: 1, y_m: 2, yaw_deg: 30}}]
+)"),
+      ElementsAre("test.yaml:10: faults: kidnap with feedback: slam: wanted no kidnapping while SLAM steers: "
+                  "once it knows the place, it would drive straight back to its path"));
+}
+
+TEST_F(ScenarioFiles, PeopleMovesAndLightsAreRead) {
+  const Scenario s = load_scenario(write(kGood + R"(people:
+  - {name: anna, model: models/robot.xml, at_s: 3, way: [{x_m: 1, y_m: 2}, {x_m: 3, y_m: 4}]}
+moves:
+  - {at_s: 5, body: chair, x_m: 1, y_m: 2, yaw_deg: 90}
+lights:
+  - {at_s: 1, light: lamp, factor: 0}
+  - {at_s: 2, for_s: 1, flicker: {rate_hz: 5, depth: 0.5}}
+)"));
+  ASSERT_EQ(s.people.size(), 1U);
+  EXPECT_EQ(s.people[0].model, (folder_ / "models" / "robot.xml").string());
+  EXPECT_EQ(s.people[0].way[1].y_m, 4);
+  EXPECT_EQ(s.people[0].line, 23);
+  EXPECT_EQ(s.moves.at(0).body, "chair");
+  EXPECT_EQ(s.moves[0].line, 25);
+  EXPECT_EQ(s.lights.at(1).flicker->rate_hz, 5);
+  EXPECT_EQ(s.lights[1].line, 28);
+  const std::string text = to_yaml(s);
+  EXPECT_EQ(to_yaml(load_scenario(write(text, "resolved.yaml"))), text);
+  EXPECT_THAT(messages(kGood + "people: [{name: a b, model: nobody.xml, way: []}]\n"),
+              ElementsAre(HasSubstr("people[0].name: a b: wanted letters, digits, dashes and underscores"),
+                          HasSubstr("people[0].way: []: wanted at least one point"),
+                          HasSubstr("people[0].model: nobody.xml: wanted an MJCF file that exists")));
 }
 
 TEST_F(ScenarioFiles, WrongFaultsNameLineKeyAndWhatIsWanted) {
