@@ -100,6 +100,8 @@ bool prepare_level(const cv::Mat& image, const Eigen::Vector2f& uv, PatchLevel& 
 /// Gauss-Newton on one level. Positions are in pixels of that level.
 KltStatus align_level(const PatchLevel& level, const cv::Mat& image, const KltOptions& options, bool affine,
                       AffineState& state) {
+  // A coarse level only has to bring the next one near enough.
+  const double converged_px = affine ? options.converged_px : std::max(options.converged_px, 0.1);
   alignas(32) PatchBuffer patch;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     if (!window_inside(image, state.uv_px, state.A)) return KltStatus::kOutside;
@@ -127,7 +129,7 @@ KltStatus align_level(const PatchLevel& level, const cv::Mat& image, const KltOp
       step = state.A * (level.inverse_translation_hessian * products.head<2>());
     }
     state.uv_px -= step;
-    if (step.squaredNorm() < options.converged_px * options.converged_px) break;
+    if (step.squaredNorm() < converged_px * converged_px) break;
   }
   return KltStatus::kTracked;
 }

@@ -10,12 +10,12 @@ namespace groundloop::slam {
 
 /// Options of the affine Lucas-Kanade tracker. YAML: slam.klt
 struct KltOptions {
-  int levels = 4;               ///< pyramid levels, full resolution included
-  int max_iterations = 12;      ///< per level
-  double converged_px = 0.015;  ///< a smaller step ends the iteration
-  double min_ncc = 0.85;        ///< least normalised cross-correlation with the first view
-  double max_sigma_px = 0.2;    ///< largest position uncertainty: keeps features from sliding along edges
-  double max_scale = 2.0;       ///< det A must stay within [1 / max_scale, max_scale]^2
+  int levels = 4;              ///< pyramid levels, full resolution included
+  int max_iterations = 12;     ///< per level
+  double converged_px = 0.02;  ///< a smaller step ends the iteration on the finest level
+  double min_ncc = 0.85;       ///< least normalised cross-correlation with the first view
+  double max_sigma_px = 0.2;   ///< largest position uncertainty: keeps features from sliding along edges
+  double max_scale = 2.0;      ///< det A must stay within [1 / max_scale, max_scale]^2
 
   template <class Archive>
   void visit(Archive& a) {

@@ -3,10 +3,13 @@
 #include <string>
 #include <vector>
 
+#include "slam/adjustment/adjustment_problem.h"
 #include "slam/features/affine_klt.h"
 #include "slam/features/detector.h"
+#include "slam/loop/loop_options.h"
 #include "slam/mapping/flog_options.h"
 #include "slam/registration/registration.h"
+#include "slam/stereo/dense_points.h"
 #include "slam/stereo/disparity.h"
 #include "slam/stereo/matcher.h"
 #include "slam/tracking/tracker.h"
@@ -20,8 +23,9 @@ struct KeyFrameOptions {
   double max_translation_ratio =
       0.1;                         ///< motion since the last key frame, relative to the median depth there
   double max_rotation_deg = 8;     ///< motion since the last key frame
-  double min_tracked_ratio = 0.6;  ///< agreeing features, relative to those of the last key frame
+  double min_tracked_ratio = 0.75; ///< agreeing features, relative to those of the last key frame
   int max_interval_frames = 30;
+  int looks_kept = 8;  ///< key frames of one place whose points stay in the map; the oldest goes
 
   template <class Archive>
   void visit(Archive& a) {
@@ -29,18 +33,21 @@ struct KeyFrameOptions {
     a("max_rotation_deg", max_rotation_deg, {.min = 0.1, .max = 180});
     a("min_tracked_ratio", min_tracked_ratio, {.min = 0, .max = 1});
     a("max_interval_frames", max_interval_frames, {.min = 1, .max = 100000});
+    a("looks_kept", looks_kept, {.min = 1, .max = 10000});
   }
 };
 
-/// Points of the dense disparity map that join the features' in the occupancy map. YAML: slam.dense_map
-struct DenseMapOptions {
-  int step_px = 8;      ///< distance of the points in the image; 0: features only, as in the paper
-  double weight = 0.3;  ///< trust in one such point, between 0 and 1
+/// What is done beside the frame path, on a second core. YAML: slam.background
+struct BackgroundOptions {
+  bool threads = true;            ///< false: done at once, with the same results at the same frames
+  int adjustment_lag_frames = 1;  ///< after a key frame, until its adjustment enters
+  int map_lag_frames = 6;         ///< after a key frame, until what was recognised in it enters
 
   template <class Archive>
   void visit(Archive& a) {
-    a("step_px", step_px, {.min = 0, .max = 1000});
-    a("weight", weight, {.min = 0, .max = 1});
+    a("threads", threads);
+    a("adjustment_lag_frames", adjustment_lag_frames, {.min = 1, .max = 1000});
+    a("map_lag_frames", map_lag_frames, {.min = 1, .max = 1000});
   }
 };
 
@@ -54,8 +61,11 @@ struct SlamOptions {
   StereoOptions stereo;
   RegistrationOptions registration;
   KeyFrameOptions key_frame;
+  AdjustmentOptions adjustment;
   FlogOptions mapping;
   DenseMapOptions dense_map;
+  LoopOptions loop;
+  BackgroundOptions background;
 
   template <class Archive>
   void visit(Archive& a) {
@@ -67,8 +77,11 @@ struct SlamOptions {
     a("stereo", stereo);
     a("registration", registration);
     a("key_frame", key_frame);
+    a("adjustment", adjustment);
     a("mapping", mapping);
     a("dense_map", dense_map);
+    a("loop", loop);
+    a("background", background);
   }
 };
 

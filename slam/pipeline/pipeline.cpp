@@ -3,92 +3,101 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
-#include "slam/features/detector.h"
+#include "slam/adjustment/window_adjustment.h"
+#include "slam/pipeline/back_end.h"
+#include "slam/pipeline/background.h"
+#include "slam/pipeline/front_end.h"
+#include "slam/pipeline/key_frame_window.h"
 #include "slam/pipeline/stage_clock.h"
 #include "slam/pipeline/state_hash.h"
-#include "slam/registration/registration.h"
-#include "slam/stereo/disparity.h"
-#include "slam/stereo/matcher.h"
-#include "slam/tracking/rotation_alignment.h"
-#include "slam/tracking/tracker.h"
-#include "slam/types/counter_random.h"
-#include "slam/types/stereo_uncertainty.h"
 
 namespace groundloop::slam {
 namespace {
 
-constexpr int kBorder_px = 18;  // keeps a first view with its gradients inside the image
+constexpr int64_t kEnd = std::numeric_limits<int64_t>::max();
 
 }  // namespace
 
 struct Pipeline::Impl {
-  Impl(const StereoRig& stereo_rig, const SlamOptions& slam_options)
-      : rig(stereo_rig),
-        options(slam_options),
-        detector(options.detection),
-        dense(options.disparity),
-        matcher(rig, options.stereo, options.klt),
-        tracker(rig, options.tracking, options.klt, matcher),
-        rotation(rig),
-        registration(rig, options.registration),
-        mapper(rig, options.mapping) {}
+  /// Answer of the background adjustment.
+  struct Adjusted {
+    WindowProblem window;
+    AdjustmentResult result;
+    double ms = 0;
+  };
+  /// A key frame on the path.
+  struct Stop {
+    Pose T_odom_left;
+    int tie = 0;  ///< that its correction follows
+  };
+  /// A frame on the path.
+  struct Step {
+    int64_t stamp_ns;
+    int key_frame;
+    Pose T_kf_left;
+  };
+
+  Impl(const StereoRig& stereo_rig, const SlamOptions& slam_options, const Oracle* oracle);
 
   void process(const StereoFrame& frame, FrameResult& result);
+  void take_results(int64_t frame_index, FrameResult& result);
   void track_frame(const StereoFrame& frame, StageClock& clock, FrameResult& result);
-  void register_frame(uint64_t seed, const Pose& T_kf_predicted);
   void lose(const StereoFrame& frame, StageClock& clock, FrameResult& result);
   void start_segment(const StereoFrame& frame, StageClock& clock, FrameResult& result);
   void make_key_frame(const StereoFrame& frame, StageClock& clock, FrameResult& result);
-  void reconstruct();
-  void add_features(const StereoFrame& frame, StageClock& clock, FrameResult& result);
-  void measure_key_frame(int64_t frame_index);
   bool wants_key_frame(const FrameResult& result) const;
-  void update_map(const StereoFrame& frame, const Matrix6d& covariance);
-  void update_cloud(const StereoFrame& frame);
-  void note(const Feature& feature, bool is_new, FrameResult& result) const;
+  void stop_here(const StereoFrame& frame, bool starts_segment, const Matrix6d& covariance,
+                 FrameResult& result);
+  void give_to_adjustment(const StereoFrame& frame);
+  void take_adjustment(const Adjusted& adjusted);
+  void give_to_back_end(const StereoFrame& frame, bool starts_segment);
+  void take_answer(const BackEndAnswer& answer, FrameResult& result);
+  Look look(const StereoFrame& frame);
+  std::vector<Landmark> landmarks() const;
+  void finish();
+  void update_path();
+  void note_features(FrameResult& result) const;
   void record(const StereoFrame& frame, FrameResult& result);
+  Pose T_map_odom() const { return T_map_odom_by_tie.back(); }
   Pose predicted_T_kf_left(const StereoFrame& frame) const;
   void check(const StereoFrame& frame) const;
 
   const StereoRig rig;
   const SlamOptions options;
-  Detector detector;
-  DenseDisparity dense;
-  StereoMatcher matcher;
-  Tracker tracker;
-  RotationAlignment rotation;
-  Registration registration;
-  Mapper mapper;
-
-  ImagePyramid left, right;
-  std::vector<PointPair> pairs;
-  std::vector<size_t> pair_feature;  ///< index into tracker.features(), per pair
-  RegistrationResult registered;
-  std::vector<Eigen::Vector2f> occupied;
-  std::vector<double> depths_m;
-  std::vector<Eigen::Vector3f> dense_points;
+  const bool adjusts;
+  FrontEnd front;
+  KeyFrameWindow window;
+  std::vector<OdometryPose> known_better;  ///< refined since the last key frame was handed over
 
   bool started = false;
   int segment = 0;
   int frames_lost = 0;
-  Pose T_map_kf = Pose::Identity();
+  Pose T_odom_kf = Pose::Identity();
   Pose T_kf_left = Pose::Identity();        ///< last frame in the last key frame
   Pose T_previous_left = Pose::Identity();  ///< last motion, for constant velocity
+  std::optional<Pose> T_kf_planned;         ///< planned motion since the last key frame
   int64_t kf_frame = 0;
-  size_t kf_features = 0;        ///< reconstructed at the last key frame
-  double kf_median_depth_m = 0;  ///< of those features
-  std::vector<KeyFrameRecord> key_frames;
-  std::vector<CloudPoint> cloud;  ///< p_map is kept in the left camera of its key frame
+  std::vector<Stop> stops;  ///< by key frame
+  std::vector<Step> steps;  ///< by frame
+  std::vector<Pose> T_map_odom_by_tie = {Pose::Identity()};
+  int stops_answered = 0;
   std::vector<LoopLink> links;
+  std::vector<KeyFrameRecord> key_frames;
   Trajectory trajectory;
+
+  // Last, so that they end before what their jobs use.
+  WindowAdjustment adjustment;
+  BackEnd back;
+  Background<std::shared_ptr<const Adjusted>> adjusting;
+  Background<BackEndAnswer> mapping;
 };
 
-Pipeline::Pipeline(const StereoRig& rig, const SlamOptions& options)
-    : impl_(std::make_unique<Impl>(rig, options)) {}
+Pipeline::Pipeline(const StereoRig& rig, const SlamOptions& options, const Oracle* oracle)
+    : impl_(std::make_unique<Impl>(rig, options, oracle)) {}
 Pipeline::~Pipeline() = default;
 
 FrameResult Pipeline::process(const StereoFrame& frame) {
@@ -97,21 +106,52 @@ FrameResult Pipeline::process(const StereoFrame& frame) {
   return result;
 }
 
-void Pipeline::finish() {}
-const Trajectory& Pipeline::trajectory() const { return impl_->trajectory; }
-const std::vector<KeyFrameRecord>& Pipeline::key_frames() const { return impl_->key_frames; }
-OccupancyMap Pipeline::map() const { return impl_->mapper.grid().map(); }
-std::vector<OccupancyMap> Pipeline::layers() const { return impl_->mapper.grid().layers(); }
-const cv::Mat& Pipeline::last_disparity() const { return impl_->dense.half_resolution(); }
+void Pipeline::process(const StereoFrame& frame, FrameResult& result) {
+  std::vector<FeatureObservation> features = std::move(result.features);
+  features.clear();
+  result = {};
+  result.features = std::move(features);
+  impl_->process(frame, result);
+}
+
+void Pipeline::finish() { impl_->finish(); }
+const Trajectory& Pipeline::trajectory() const {
+  impl_->update_path();
+  return impl_->trajectory;
+}
+const std::vector<KeyFrameRecord>& Pipeline::key_frames() const {
+  impl_->update_path();
+  return impl_->key_frames;
+}
+const std::vector<LoopLink>& Pipeline::links() const { return impl_->links; }
+OccupancyMap Pipeline::map() const { return impl_->back.map().grid().map(); }
+std::vector<OccupancyMap> Pipeline::layers() const { return impl_->back.map().grid().layers(); }
+const cv::Mat& Pipeline::last_disparity() const { return impl_->front.dense().half_resolution(); }
 const SlamOptions& Pipeline::options() const { return impl_->options; }
 
-const std::vector<LoopLink>& Pipeline::links() const { return impl_->links; }
-
 std::vector<CloudPoint> Pipeline::cloud() const {
-  std::vector<CloudPoint> cloud = impl_->cloud;
-  for (CloudPoint& point : cloud) point.p_map = impl_->key_frames[point.key_frame].T_map_left * point.p_map;
+  std::vector<CloudPoint> cloud;
+  const std::vector<Pose>& T_map_place = impl_->back.places().T_map_place();
+  for (const Look& look : impl_->back.map().looks()) {
+    const Pose T_map_left = T_map_place[look.place] * look.T_place_left;
+    for (const SeenPoint& point : look.points) {
+      cloud.push_back({T_map_left * point.p_left.cast<double>(), point.sigma_m, point.grey, look.key_frame});
+    }
+  }
   return cloud;
 }
+
+Pipeline::Impl::Impl(const StereoRig& stereo_rig, const SlamOptions& slam_options, const Oracle* oracle)
+    : rig(stereo_rig),
+      options(slam_options),
+      adjusts(options.adjustment.key_frames > 1 &&
+              (oracle == nullptr || !oracle->replaces(OracleStage::kMotion))),
+      front(rig, options, oracle),
+      window(options.adjustment),
+      adjustment(rig, options.adjustment),
+      back(rig, options, oracle),
+      adjusting(options.background.threads),
+      mapping(options.background.threads) {}
 
 /// One stereo pair, in the order of the paper's section 2.
 void Pipeline::Impl::process(const StereoFrame& frame, FrameResult& result) {
@@ -119,14 +159,18 @@ void Pipeline::Impl::process(const StereoFrame& frame, FrameResult& result) {
   result.index = frame.index;
   result.stamp_ns = frame.stamp_ns;
   StageClock clock(result);
+  take_results(frame.index, result);
+  clock.restart();
+  front.see(frame, clock);
 
-  left.build(frame.left, options.klt.levels);
-  right.build(frame.right, options.klt.levels);
-  clock.lap(Stage::kPyramid);
-
+  if (T_kf_planned && frame.T_previous_left) {
+    T_kf_planned = *T_kf_planned * *frame.T_previous_left;
+  } else {
+    T_kf_planned.reset();
+  }
   if (!started) {
     // While there is nothing to see, the plan goes on.
-    if (!trajectory.empty()) T_kf_left = predicted_T_kf_left(frame);
+    if (!steps.empty()) T_kf_left = predicted_T_kf_left(frame);
     start_segment(frame, clock, result);
   } else {
     track_frame(frame, clock, result);
@@ -139,41 +183,20 @@ void Pipeline::Impl::process(const StereoFrame& frame, FrameResult& result) {
   record(frame, result);
 }
 
-/// Tracks the features of the last key frame and registers their new reconstruction with the old one.
+/// What was done beside the frame path and is due now.
+void Pipeline::Impl::take_results(int64_t frame_index, FrameResult& result) {
+  adjusting.collect(frame_index, [&](const std::shared_ptr<const Adjusted>& adjusted) {
+    result.stage_ms[static_cast<size_t>(Stage::kAdjustment)] += adjusted->ms;
+    take_adjustment(*adjusted);
+  });
+  mapping.collect(frame_index, [&](const BackEndAnswer& answer) { take_answer(answer, result); });
+}
+
 void Pipeline::Impl::track_frame(const StereoFrame& frame, StageClock& clock, FrameResult& result) {
-  const auto seed = static_cast<uint64_t>(frame.index);
-  const auto few = [this](double share) {
-    return registered.inliers < static_cast<int>(share * static_cast<double>(kf_features));
-  };
   Pose T_kf_predicted = predicted_T_kf_left(frame);
-  tracker.track(left, right, T_kf_left, T_kf_predicted);
-  clock.lap(Stage::kTracking);
-  register_frame(seed, T_kf_predicted);
-  clock.lap(Stage::kRegistration);
-
-  // The plan was far off, or there is none: let the whole image say how the camera turned.
-  if (!registered.usable || few(0.4)) {
-    Pose T_left = T_kf_left.inverse() * T_kf_predicted;
-    T_left.linear() = rotation.align(left, T_left.linear());
-    T_kf_predicted = T_kf_left * T_left;
-    tracker.track_again(left, right, T_kf_left, T_kf_predicted);
-    clock.lap(Stage::kTracking);
-    register_frame(seed, T_kf_predicted);
-    clock.lap(Stage::kRegistration);
-  }
-  // Features that were looked for in the wrong place are looked for again where the motion found puts them.
-  if (registered.usable && few(0.7)) {
-    tracker.track_again(left, right, T_kf_left, registered.T_from_to);
-    clock.lap(Stage::kTracking);
-    register_frame(seed, registered.T_from_to);
-    clock.lap(Stage::kRegistration);
-  }
-  rotation.remember(left);
-
-  for (const Feature& feature : tracker.features()) {
-    if (feature.in_left) note(feature, false, result);
-  }
-  result.features_tracked = static_cast<int>(pairs.size());
+  const RegistrationResult& registered = front.follow(frame, T_kf_left, T_kf_predicted, clock);
+  note_features(result);
+  result.features_tracked = static_cast<int>(registered.inlier.size());
   result.inliers = registered.inliers;
   result.residual_px = registered.residual_px;
   result.covariance = registered.covariance;
@@ -189,21 +212,6 @@ void Pipeline::Impl::track_frame(const StereoFrame& frame, StageClock& clock, Fr
   }
 }
 
-void Pipeline::Impl::register_frame(uint64_t seed, const Pose& T_kf_predicted) {
-  pairs.clear();
-  pair_feature.clear();
-  std::vector<Feature>& features = tracker.features();
-  for (size_t i = 0; i < features.size(); ++i) {
-    features[i].is_inlier = false;
-    if (!features[i].in_right) continue;
-    pairs.push_back({features[i].p_kf, features[i].covariance_kf,
-                     optimal_measurement(features[i].left.uv_px, features[i].right.uv_px)});
-    pair_feature.push_back(i);
-  }
-  registration.align(pairs, T_kf_predicted, mix_bits(options.seed) ^ seed, registered);
-  for (size_t k = 0; k < pairs.size(); ++k) features[pair_feature[k]].is_inlier = registered.inlier[k] != 0;
-}
-
 /// Without a pose the plan is believed for some frames; then everything starts anew where the plan says.
 void Pipeline::Impl::lose(const StereoFrame& frame, StageClock& clock, FrameResult& result) {
   if (++frames_lost <= options.tracking.hold_lost_frames) return;
@@ -214,100 +222,177 @@ void Pipeline::Impl::lose(const StereoFrame& frame, StageClock& clock, FrameResu
 }
 
 void Pipeline::Impl::start_segment(const StereoFrame& frame, StageClock& clock, FrameResult& result) {
-  const bool first = trajectory.empty();
-  T_map_kf = first ? rig.T_body_left : T_map_kf * T_kf_left;
-  T_kf_left.setIdentity();
-  tracker.clear();
-  add_features(frame, clock, result);
-  rotation.remember(left);
-  measure_key_frame(frame.index);
-  if (static_cast<int>(kf_features) < options.registration.min_inliers) {
-    tracker.clear();
+  const bool first = steps.empty();
+  front.start(frame, clock);
+  const auto features = static_cast<int>(front.key_frame_features());
+  if (features < options.registration.min_inliers) {
+    front.forget_features();
     started = false;
     result.status = TrackingStatus::kLost;
-    result.message = fmt::format("{} features found in both images, {} needed to start", kf_features,
+    result.message = fmt::format("{} features found in both images, {} needed to start", features,
                                  options.registration.min_inliers);
     return;
   }
+  T_odom_kf = stops.empty() ? rig.T_body_left * T_kf_left : T_odom_kf * T_kf_left;
+  T_kf_left.setIdentity();
   if (!first) ++segment;
   started = true;
   frames_lost = 0;
   result.status = TrackingStatus::kStarted;
-  result.is_key_frame = true;
-  update_map(frame, result.covariance);
-  clock.lap(Stage::kMapping);
+  window.clear();
+  stop_here(frame, true, Matrix6d::Zero(), result);
 }
 
 /// The reconstruction of this frame takes the place of the last key frame's, and new features join.
 void Pipeline::Impl::make_key_frame(const StereoFrame& frame, StageClock& clock, FrameResult& result) {
-  T_map_kf = renormalised(T_map_kf * T_kf_left);
+  front.renew(frame, T_kf_left, !adjusts, clock);
+  T_odom_kf = renormalised(T_odom_kf * T_kf_left);
   T_kf_left.setIdentity();
-  tracker.remove_if([](const Feature& f) { return !f.in_right || !f.is_inlier; });
-  reconstruct();
-  add_features(frame, clock, result);
-  measure_key_frame(frame.index);
+  stop_here(frame, false, result.covariance, result);
+}
+
+void Pipeline::Impl::stop_here(const StereoFrame& frame, bool starts_segment, const Matrix6d& covariance,
+                               FrameResult& result) {
   result.is_key_frame = true;
-  update_map(frame, result.covariance);
-  clock.lap(Stage::kMapping);
+  note_features(result);
+  kf_frame = frame.index;
+  const auto number = static_cast<int>(stops.size());
+  stops.push_back({T_odom_kf, static_cast<int>(T_map_odom_by_tie.size()) - 1});
+  key_frames.push_back({frame.index, frame.stamp_ns, segment, T_map_odom() * T_odom_kf, covariance, {}});
+  window.add(number, T_odom_kf, T_kf_planned, front.features());
+  T_kf_planned = Pose::Identity();
+  if (adjusts) give_to_adjustment(frame);
+  give_to_back_end(frame, starts_segment);
 }
 
-/// Triangulates the tracked features where they are now.
-void Pipeline::Impl::reconstruct() {
-  tracker.remove_if([this](Feature& feature) {
+void Pipeline::Impl::give_to_adjustment(const StereoFrame& frame) {
+  if (window.size() < 2) return;
+  auto adjusted = std::make_shared<Adjusted>();
+  adjusted->window = window.problem({});
+  adjusting.submit(frame.index + options.background.adjustment_lag_frames,
+                   [this, adjusted]() -> std::shared_ptr<const Adjusted> {
+                     const auto start = std::chrono::steady_clock::now();
+                     adjustment.solve(adjusted->window.problem, adjusted->result);
+                     const std::chrono::duration<double, std::milli> spent =
+                         std::chrono::steady_clock::now() - start;
+                     adjusted->ms = spent.count();
+                     return adjusted;
+                   });
+}
+
+void Pipeline::Impl::take_adjustment(const Adjusted& adjusted) {
+  const AdjustmentResult& result = adjusted.result;
+  const std::vector<int>& numbers = adjusted.window.key_frames;
+  // A loss of track since then has started a new window.
+  if (!result.usable || numbers.back() != static_cast<int>(stops.size()) - 1) return;
+  window.refine(numbers, result.T_odom_left);
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    stops[numbers[i]].T_odom_left = result.T_odom_left[i];
+    if (i == 0) continue;
+    key_frames[numbers[i]].covariance = result.motion_covariance[i];
+    known_better.push_back({numbers[i], result.T_odom_left[i], result.motion_covariance[i]});
+  }
+  T_odom_kf = result.T_odom_left.back();
+  const Pose T_kf_odom = T_odom_kf.inverse();
+  const Eigen::Matrix3d R = T_kf_odom.linear();
+  const std::vector<int64_t>& ids = adjusted.window.feature_ids;
+  for (Feature& feature : front.features()) {
+    const auto found = std::lower_bound(ids.begin(), ids.end(), feature.id);
+    if (found == ids.end() || *found != feature.id) continue;
+    const auto landmark = static_cast<size_t>(found - ids.begin());
+    const Eigen::Matrix3d& covariance = result.landmark_covariance[landmark];
+    if (covariance.isZero()) continue;
+    feature.p_kf = T_kf_odom * result.landmarks_odom[landmark];
+    feature.covariance_kf = R * covariance * R.transpose();
+  }
+}
+
+void Pipeline::Impl::give_to_back_end(const StereoFrame& frame, bool starts_segment) {
+  auto handed_over = std::make_shared<HandedOver>();
+  handed_over->pose = {static_cast<int>(stops.size()) - 1, T_odom_kf, key_frames.back().covariance};
+  handed_over->known_better.swap(known_better);
+  handed_over->starts_segment = starts_segment;
+  handed_over->T_map_left = T_map_odom() * T_odom_kf;
+  handed_over->sight.index = frame.index;
+  if (options.loop.enabled) {
+    handed_over->sight.left = frame.left.clone();
+    handed_over->sight.right = frame.right.clone();
+    handed_over->sight.half_disparity = front.dense().half_resolution().clone();
+    handed_over->sight.landmarks = landmarks();
+  }
+  handed_over->look = look(frame);
+  mapping.submit(frame.index + options.background.map_lag_frames,
+                 [this, handed_over] { return back.process(std::move(*handed_over)); });
+}
+
+/// The points of a key frame for the map and the cloud. Section 2.4.
+Look Pipeline::Impl::look(const StereoFrame& frame) {
+  constexpr double kTrustedAfter = 3;  // key frames; a point seen once is trusted a third
+  Look look;
+  look.observations.reserve(front.features().size());
+  for (const Feature& feature : front.features()) {
     const Eigen::Vector3d uvu = optimal_measurement(feature.left.uv_px, feature.right.uv_px);
-    const std::optional<Eigen::Vector3d> p = rig.triangulate(uvu);
-    if (!p) return true;
-    feature.p_kf = *p;
-    feature.covariance_kf = point_covariance(rig, uvu, options.registration.sigma_px);
-    ++feature.key_frames;
-    return false;
-  });
+    const double trust = std::min(1.0, feature.key_frames / kTrustedAfter);
+    look.observations.push_back({uvu.cast<float>(), static_cast<float>(trust)});
+    // A feature enters the cloud once two key frames agree on it.
+    if (feature.key_frames != 2) continue;
+    look.points.push_back(
+        {feature.p_kf.cast<float>(), static_cast<float>(std::sqrt(feature.covariance_kf(2, 2))),
+         frame.left.at<uint8_t>(cvRound(feature.left.uv_px.y()), cvRound(feature.left.uv_px.x()))});
+  }
+  if (options.dense_map.step_px > 0) {
+    for (const Eigen::Vector3f& uvu : front.dense_points(frame)) {
+      look.observations.push_back({uvu, static_cast<float>(options.dense_map.weight)});
+    }
+  }
+  return look;
 }
 
-/// New features, their match in the right image and their first reconstruction. Sections 2.1 and 2.2.
-void Pipeline::Impl::add_features(const StereoFrame& frame, StageClock& clock, FrameResult& result) {
-  occupied.clear();
-  for (const Feature& feature : tracker.features()) occupied.push_back(feature.left.uv_px);
-  const int wanted = options.tracking.max_features - static_cast<int>(occupied.size());
-  const std::vector<Eigen::Vector2f>& corners = detector.detect(frame.left, occupied, wanted, kBorder_px);
-  clock.lap(Stage::kDetection);
-  dense.compute(frame.left, frame.right);
-  clock.lap(Stage::kDisparity);
-  for (const Eigen::Vector2f& corner : corners) {
-    Feature* feature = tracker.add(left, corner);
-    if (feature == nullptr) continue;
-    const auto match = matcher.match(tracker.first_view(*feature), feature->left, dense, right);
-    if (!match) continue;
-    feature->right = *match;
-    feature->in_right = true;
-    const Eigen::Vector3d uvu = optimal_measurement(feature->left.uv_px, feature->right.uv_px);
-    feature->p_kf = *rig.triangulate(uvu);
-    feature->covariance_kf = point_covariance(rig, uvu, options.registration.sigma_px);
-    feature->key_frames = 1;
+std::vector<Landmark> Pipeline::Impl::landmarks() const {
+  std::vector<Landmark> landmarks;
+  landmarks.reserve(front.features().size());
+  for (const Feature& feature : front.features()) {
+    landmarks.push_back({feature.left.uv_px, static_cast<float>(feature.p_kf.z()),
+                         static_cast<float>(std::sqrt(feature.covariance_kf(2, 2)))});
   }
-  tracker.remove_if([](const Feature& f) { return !f.in_right; });
-  for (const Feature& feature : tracker.features()) {
-    if (feature.key_frames == 1) note(feature, true, result);
-  }
-  clock.lap(Stage::kStereo);
+  return landmarks;
 }
 
-void Pipeline::Impl::measure_key_frame(int64_t frame_index) {
-  kf_frame = frame_index;
-  kf_features = tracker.features().size();
-  depths_m.clear();
-  for (const Feature& feature : tracker.features()) depths_m.push_back(feature.p_kf.z());
-  if (depths_m.empty()) return;
-  const auto middle = depths_m.begin() + static_cast<std::ptrdiff_t>(depths_m.size() / 2);
-  std::nth_element(depths_m.begin(), middle, depths_m.end());
-  kf_median_depth_m = *middle;
+void Pipeline::Impl::take_answer(const BackEndAnswer& answer, FrameResult& result) {
+  result.stage_ms[static_cast<size_t>(Stage::kLoop)] += answer.loop_ms;
+  result.stage_ms[static_cast<size_t>(Stage::kMapping)] += answer.mapping_ms;
+  T_map_odom_by_tie = answer.T_map_odom;
+  for (size_t k = static_cast<size_t>(answer.key_frame); k < stops.size(); ++k) stops[k].tie = answer.tie;
+  if (!answer.link) return;
+  links.push_back(*answer.link);
+  result.links.push_back(*answer.link);
+}
+
+void Pipeline::Impl::finish() {
+  FrameResult last;
+  take_results(kEnd, last);
+  mapping.submit(kEnd, [this] { return back.finish(known_better); });
+  take_results(kEnd, last);
+  for (const Look& look : back.map().looks()) key_frames[look.key_frame].observations = look.observations;
+}
+
+/// Where all corrections known now put the frames and key frames.
+void Pipeline::Impl::update_path() {
+  for (size_t k = 0; k < stops.size(); ++k) {
+    key_frames[k].T_map_left = T_map_odom_by_tie[stops[k].tie] * stops[k].T_odom_left;
+  }
+  trajectory.clear();
+  for (const Step& step : steps) {
+    const Pose& T_map_kf = step.key_frame < 0 ? rig.T_body_left : key_frames[step.key_frame].T_map_left;
+    trajectory.push_back({step.stamp_ns, T_map_kf * step.T_kf_left});
+  }
 }
 
 bool Pipeline::Impl::wants_key_frame(const FrameResult& result) const {
   const KeyFrameOptions& when = options.key_frame;
-  return T_kf_left.translation().norm() > when.max_translation_ratio * kf_median_depth_m ||
+  return T_kf_left.translation().norm() > when.max_translation_ratio * front.key_frame_depth_m() ||
          rotation_angle_rad(T_kf_left.linear()) > when.max_rotation_deg * std::numbers::pi / 180 ||
-         result.inliers < when.min_tracked_ratio * static_cast<double>(kf_features) ||
+         result.inliers < when.min_tracked_ratio * static_cast<double>(front.key_frame_features()) ||
          result.index - kf_frame >= when.max_interval_frames;
 }
 
@@ -315,57 +400,32 @@ Pose Pipeline::Impl::predicted_T_kf_left(const StereoFrame& frame) const {
   return T_kf_left * frame.T_previous_left.value_or(T_previous_left);
 }
 
-void Pipeline::Impl::note(const Feature& feature, bool is_new, FrameResult& result) const {
-  result.features.push_back({feature.id, feature.left.uv_px.x(), feature.left.uv_px.y(),
-                             feature.right.uv_px.x(), feature.right.uv_px.y(), feature.in_right, is_new,
-                             feature.is_inlier});
+/// The features of the frame as they are now; a later call replaces an earlier one's.
+void Pipeline::Impl::note_features(FrameResult& result) const {
+  if (!result.is_key_frame) {
+    for (const Feature& feature : front.features()) {
+      if (!feature.in_left) continue;
+      result.features.push_back({feature.id, feature.left.uv_px.x(), feature.left.uv_px.y(),
+                                 feature.right.uv_px.x(), feature.right.uv_px.y(), feature.in_right, false,
+                                 feature.is_inlier});
+    }
+    return;
+  }
+  for (const Feature& feature : front.features()) {
+    if (feature.key_frames != 1) continue;
+    result.features.push_back({feature.id, feature.left.uv_px.x(), feature.left.uv_px.y(),
+                               feature.right.uv_px.x(), feature.right.uv_px.y(), feature.in_right, true,
+                               feature.is_inlier});
+  }
 }
 
 void Pipeline::Impl::record(const StereoFrame& frame, FrameResult& result) {
   result.segment = segment;
-  result.T_map_left = T_map_kf * T_kf_left;
+  const auto key_frame = static_cast<int>(stops.size()) - 1;
+  const Pose T_odom_left = (key_frame < 0 ? rig.T_body_left : T_odom_kf) * T_kf_left;
+  result.T_map_left = T_map_odom() * T_odom_left;
   result.state_hash = state_hash(result);
-  trajectory.push_back({frame.stamp_ns, result.T_map_left});
-}
-
-/// The points of a key frame enter the map and the cloud. Section 2.4.
-void Pipeline::Impl::update_map(const StereoFrame& frame, const Matrix6d& covariance) {
-  constexpr double kTrustedAfter = 3;  // key frames; a point seen once is trusted a third
-  KeyFrameRecord record{frame.index, frame.stamp_ns, segment, T_map_kf, covariance, {}};
-  record.observations.reserve(tracker.features().size());
-  for (const Feature& feature : tracker.features()) {
-    const Eigen::Vector3d uvu = optimal_measurement(feature.left.uv_px, feature.right.uv_px);
-    const double trust = std::min(1.0, feature.key_frames / kTrustedAfter);
-    record.observations.push_back({uvu.cast<float>(), static_cast<float>(trust)});
-  }
-  if (options.dense_map.step_px > 0) {
-    dense_points.clear();
-    dense.sample(options.dense_map.step_px, dense_points);
-    for (const Eigen::Vector3f& uvu : dense_points) {
-      record.observations.push_back({uvu, static_cast<float>(options.dense_map.weight)});
-    }
-  }
-  mapper.add(T_map_kf, record.observations);
-  key_frames.push_back(std::move(record));
-  update_cloud(frame);
-}
-
-/// A feature enters the cloud once two key frames agree on it, and stays as the key frame nearest to it saw
-/// it.
-void Pipeline::Impl::update_cloud(const StereoFrame& frame) {
-  const int key_frame = static_cast<int>(key_frames.size()) - 1;
-  for (Feature& feature : tracker.features()) {
-    if (feature.key_frames < 2) continue;
-    const auto sigma_m = static_cast<float>(std::sqrt(feature.covariance_kf(2, 2)));
-    const auto grey =
-        frame.left.at<uint8_t>(cvRound(feature.left.uv_px.y()), cvRound(feature.left.uv_px.x()));
-    if (feature.cloud_point < 0) {
-      feature.cloud_point = static_cast<int>(cloud.size());
-      cloud.push_back({feature.p_kf, sigma_m, grey, key_frame});
-    } else if (sigma_m < cloud[feature.cloud_point].sigma_m) {
-      cloud[feature.cloud_point] = {feature.p_kf, sigma_m, grey, key_frame};
-    }
-  }
+  steps.push_back({frame.stamp_ns, key_frame, T_kf_left});
 }
 
 void Pipeline::Impl::check(const StereoFrame& frame) const {

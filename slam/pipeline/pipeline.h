@@ -8,6 +8,7 @@
 #include "slam/pipeline/options.h"
 #include "slam/types/frame_result.h"
 #include "slam/types/occupancy_map.h"
+#include "slam/types/oracle.h"
 #include "slam/types/stereo_frame.h"
 #include "slam/types/stereo_rig.h"
 
@@ -20,8 +21,9 @@ struct KeyFrameRecord {
   int segment = 0;
   Pose T_map_left = Pose::Identity();
   Matrix6d covariance =
-      Matrix6d::Zero();  ///< of the motion from the key frame before, twist in its left camera
-  std::vector<MapObservation> observations;  ///< what it added to the map
+      Matrix6d::Zero();  ///< of the motion from the key frame before, right perturbation in this one
+  /// What it added to the map, known after finish(); empty when newer key frames of its place replaced it.
+  std::vector<MapObservation> observations;
 };
 
 /// One point of the cloud.
@@ -29,7 +31,7 @@ struct CloudPoint {
   Eigen::Vector3d p_map = Eigen::Vector3d::Zero();
   float sigma_m = 0;  ///< standard deviation along its ray
   uint8_t grey = 0;
-  int key_frame = 0;  ///< that saw it best, index into key_frames()
+  int key_frame = 0;  ///< that added it, index into key_frames()
 };
 
 /// The SLAM core: stereo pairs in, pose of each and a map out. Knows nothing of where the pairs come from.
@@ -38,17 +40,21 @@ struct CloudPoint {
 /// T_map_left of frame 0 equals rig.T_body_left.
 class Pipeline {
  public:
-  Pipeline(const StereoRig& rig, const SlamOptions& options);
+  /// @param oracle  exact answers in the place of a stage, for experiments; must outlive the pipeline
+  Pipeline(const StereoRig& rig, const SlamOptions& options, const Oracle* oracle = nullptr);
   ~Pipeline();
 
   /// Takes one pair. Losing track is a status, never an exception.
   /// @throws std::invalid_argument when the images are not 8-bit grey of the rig's size
   FrameResult process(const StereoFrame& frame);
+  /// The same, into a result whose storage is reused.
+  void process(const StereoFrame& frame, FrameResult& result);
 
-  /// Completes the work in flight (last local map); call once after the last frame.
+  /// Completes the work in flight and draws the map where everything is now known to be. Call once after the
+  /// last frame; map, layers and cloud are there after it.
   void finish();
 
-  /// Left camera poses of every frame so far, with all corrections known now.
+  /// Left camera poses of every frame so far, with all corrections that have entered.
   const Trajectory& trajectory() const;
   const std::vector<KeyFrameRecord>& key_frames() const;
   std::vector<CloudPoint> cloud() const;

@@ -6,15 +6,23 @@ namespace {
 /// The method of the paper, sections 2.1 to 2.4, with the stated choices of docs/paper-to-code.md.
 SlamOptions paper() {
   SlamOptions options;
+  options.tracking.max_features = 400;
   options.tracking.hold_lost_frames = 0;
-  options.registration.cost = RegistrationCost::kScalarQuadratic;
-  options.registration.lorentz_scale = 1;
-  options.mapping.fuse_layers = false;
-  options.dense_map.step_px = 0;
-  // Every registration adds its error to the path, and the scalar weights make it a large one: key frames are
-  // fewer than with the whole covariance, and doubtful features are kept for the sake of numbers.
-  options.key_frame.min_tracked_ratio = 0.45;
   options.klt.max_sigma_px = 0.3;
+  options.registration.cost = RegistrationCost::kScalarQuadratic;
+  options.stereo.epipolar_gate_px = 1;
+  options.mapping.fuse_layers = false;
+  options.mapping.ends_deny_empty = false;
+  options.mapping.layer_heights_m = {0.05, 0.5, 1.0, 1.5, 2.0};
+  options.mapping.k_empty = 0.4;
+  options.mapping.sigma_disparity_px = 0.25;
+  options.mapping.sigma_max_m = 0.30;
+  options.dense_map.step_px = 0;
+  options.adjustment.key_frames = 0;
+  options.loop.enabled = false;
+  // Every registration adds its error to the path, and the scalar weights make it a large one: key frames are
+  // fewer than with the whole covariance.
+  options.key_frame.min_tracked_ratio = 0.45;
   return options;
 }
 

@@ -16,6 +16,8 @@ class StageClock {
     result_.stage_ms[static_cast<size_t>(stage)] += milliseconds(now - last_);
     last_ = now;
   }
+  /// Leaves the time since the last lap to no stage.
+  void restart() { last_ = Clock::now(); }
   ~StageClock() { result_.total_ms = milliseconds(Clock::now() - start_); }
   StageClock(const StageClock&) = delete;
   StageClock& operator=(const StageClock&) = delete;

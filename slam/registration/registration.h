@@ -22,7 +22,7 @@ enum class RegistrationCost {
 struct RegistrationOptions {
   RegistrationCost cost = RegistrationCost::kReprojection;
   double sigma_px = 0.2;        ///< standard deviation of one image coordinate of a tracked feature
-  double lorentz_scale = 2.0;   ///< in standard deviations: larger misfits lose weight (1 in the paper)
+  double lorentz_scale = 1.0;   ///< in standard deviations: larger misfits lose weight
   double inlier_gate_px = 2.5;  ///< reprojection misfit that still counts as agreement
   int ransac_iterations = 100;  ///< three-point samples tried for the start
   int max_iterations = 30;

@@ -11,7 +11,7 @@ namespace groundloop::slam {
 
 /// Options of left-right matching. YAML: slam.stereo
 struct StereoOptions {
-  double epipolar_gate_px = 1.0;       ///< largest row difference of a match
+  double epipolar_gate_px = 0.8;       ///< largest row difference of a match
   double min_disparity_px = 1.0;       ///< beyond the disparity at infinity; smaller ones carry no depth
   double max_prediction_error_px = 6;  ///< farther from the dense disparity is another surface
 

@@ -13,6 +13,9 @@ struct Feature {
   int64_t id = 0;
   int slot = 0;  ///< of its first view
 
+  int64_t first_frame = 0;  ///< of its first view
+  Eigen::Vector2f first_uv_px = Eigen::Vector2f::Zero();
+
   AffineState left;
   AffineState right;
   Eigen::Matrix2f shape_before = Eigen::Matrix2f::Identity();  ///< shape in the previous left image
@@ -22,7 +25,6 @@ struct Feature {
   Eigen::Vector3d p_kf = Eigen::Vector3d::Zero();  ///< in the left camera of the last key frame [m]
   Eigen::Matrix3d covariance_kf = Eigen::Matrix3d::Identity();
   bool is_inlier = false;  ///< agreed with the last registered motion
-  int cloud_point = -1;    ///< index of its point in the cloud, -1 before it has one
   int key_frames = 0;      ///< number of key frames that reconstructed it
 };
 

@@ -104,7 +104,7 @@ Feature* Tracker::add(const ImagePyramid& left, const Eigen::Vector2f& uv_px) {
   Feature feature;
   feature.id = next_id_++;
   feature.slot = slot;
-  feature.left.uv_px = uv_px;
+  feature.first_uv_px = feature.left.uv_px = uv_px;
   feature.left.ncc = 1;
   feature.in_left = true;
   features_.push_back(feature);

@@ -15,7 +15,7 @@ namespace groundloop::slam {
 
 /// Options of tracking. YAML: slam.tracking
 struct TrackingOptions {
-  int max_features = 400;    ///< aimed at after every key frame
+  int max_features = 460;    ///< aimed at after every key frame in 640 x 480 px, more in a larger image
   int start_level = 1;       ///< coarsest pyramid level searched first; all levels are tried when it fails
   int hold_lost_frames = 3;  ///< frames without pose that are waited for before a new segment is started
 

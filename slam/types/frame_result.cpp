@@ -18,7 +18,7 @@ const char* name_of(TrackingStatus status) {
 
 const char* name_of(Stage stage) {
   constexpr std::array<const char*, kStageCount> kNames = {
-      "pyramid", "tracking", "registration", "detection", "disparity", "stereo", "mapping", "loop"};
+      "pyramid", "tracking", "registration", "detection", "disparity", "stereo", "adjustment", "loop", "mapping"};
   return kNames.at(static_cast<size_t>(stage));
 }
 

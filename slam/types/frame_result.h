@@ -18,7 +18,9 @@ enum class TrackingStatus {
 };
 const char* name_of(TrackingStatus status);
 
-/// The stages whose time is measured in every frame, in the order in which they run.
+/// The stages whose time is measured in every frame, in the order in which they run. From kAdjustment on they
+/// run beside the frame path; their time is told by the frame at which their result enters and is no part of
+/// FrameResult::total_ms.
 enum class Stage {
   kPyramid,
   kTracking,
@@ -26,8 +28,9 @@ enum class Stage {
   kDetection,
   kDisparity,
   kStereo,
-  kMapping,
+  kAdjustment,
   kLoop,
+  kMapping,
   kCount
 };
 inline constexpr size_t kStageCount = static_cast<size_t>(Stage::kCount);

@@ -1,0 +1,198 @@
+#include "slam/pipeline/front_end.h"
+
+#include <algorithm>
+
+#include "slam/types/counter_random.h"
+#include "slam/types/stereo_uncertainty.h"
+
+namespace groundloop::slam {
+namespace {
+
+constexpr int kBorder_px = 18;  // keeps a first view with its gradients inside the image
+
+}  // namespace
+
+FrontEnd::FrontEnd(const StereoRig& rig, const SlamOptions& options, const Oracle* oracle)
+    : rig_(rig),
+      options_(options),
+      oracle_(oracle),
+      detector_(options.detection),
+      dense_(options.disparity),
+      matcher_(rig, options.stereo, options.klt),
+      tracker_(rig, options.tracking, options.klt, matcher_),
+      rotation_(rig),
+      registration_(rig, options.registration) {}
+
+void FrontEnd::see(const StereoFrame& frame, StageClock& clock) {
+  left_.build(frame.left, options_.klt.levels);
+  right_.build(frame.right, options_.klt.levels);
+  clock.lap(Stage::kPyramid);
+}
+
+const RegistrationResult& FrontEnd::follow(const StereoFrame& frame, const Pose& T_kf_previous,
+                                           Pose& T_kf_predicted, StageClock& clock) {
+  const auto few = [this](double share) {
+    return registered_.inliers < static_cast<int>(share * static_cast<double>(kf_features_));
+  };
+  const auto align = [&](const Pose& T_kf_start) {
+    clock.lap(Stage::kTracking);
+    register_points(frame, T_kf_start);
+    clock.lap(Stage::kRegistration);
+  };
+  if (replaced(OracleStage::kTracking)) {
+    look_up_tracks(frame.index);
+    align(T_kf_predicted);
+    return registered_;
+  }
+  tracker_.track(left_, right_, T_kf_previous, T_kf_predicted);
+  align(T_kf_predicted);
+
+  // The plan was far off, or there is none: let the whole image say how the camera turned.
+  if (!registered_.usable || few(0.4)) {
+    Pose T_left = T_kf_previous.inverse() * T_kf_predicted;
+    T_left.linear() = rotation_.align(left_, T_left.linear());
+    T_kf_predicted = T_kf_previous * T_left;
+    tracker_.track_again(left_, right_, T_kf_previous, T_kf_predicted);
+    align(T_kf_predicted);
+  }
+  // Features that were looked for in the wrong place are looked for again where the motion found puts them.
+  if (registered_.usable && few(0.7)) {
+    tracker_.track_again(left_, right_, T_kf_previous, registered_.T_from_to);
+    align(registered_.T_from_to);
+  }
+  rotation_.remember(left_);
+  return registered_;
+}
+
+void FrontEnd::register_points(const StereoFrame& frame, const Pose& T_kf_predicted) {
+  pairs_.clear();
+  pair_feature_.clear();
+  std::vector<Feature>& features = tracker_.features();
+  for (size_t i = 0; i < features.size(); ++i) {
+    features[i].is_inlier = false;
+    if (!features[i].in_right) continue;
+    pairs_.push_back({features[i].p_kf, features[i].covariance_kf,
+                      optimal_measurement(features[i].left.uv_px, features[i].right.uv_px)});
+    pair_feature_.push_back(i);
+  }
+  const uint64_t seed = mix_bits(options_.seed) ^ static_cast<uint64_t>(frame.index);
+  registration_.align(pairs_, T_kf_predicted, seed, registered_);
+  for (size_t k = 0; k < pairs_.size(); ++k)
+    features[pair_feature_[k]].is_inlier = registered_.inlier[k] != 0;
+  if (!replaced(OracleStage::kMotion)) return;
+  const std::optional<Pose> exact = oracle_->T_from_to(kf_frame_, frame.index);
+  registered_.usable = registered_.usable && exact;
+  if (exact) registered_.T_from_to = *exact;
+}
+
+void FrontEnd::look_up_tracks(int64_t frame) {
+  for (Feature& feature : tracker_.features()) {
+    const auto match = oracle_->track(feature.first_frame, feature.first_uv_px.cast<double>(), frame);
+    feature.in_left = match.has_value();
+    feature.in_right = match && match->right_px;
+    if (feature.in_left) feature.left.uv_px = match->left_px.cast<float>();
+    if (feature.in_right) feature.right.uv_px = match->right_px->cast<float>();
+  }
+}
+
+void FrontEnd::start(const StereoFrame& frame, StageClock& clock) {
+  tracker_.clear();
+  add_features(frame, clock);
+  rotation_.remember(left_);
+}
+
+void FrontEnd::renew(const StereoFrame& frame, const Pose& T_kf_left, bool reconstruct, StageClock& clock) {
+  tracker_.remove_if([](const Feature& f) { return !f.in_right || !f.is_inlier; });
+  if (reconstruct) {
+    triangulate_again();
+  } else {
+    carry_over(T_kf_left);
+  }
+  add_features(frame, clock);
+}
+
+void FrontEnd::triangulate_again() {
+  tracker_.remove_if([this](Feature& feature) {
+    const Eigen::Vector3d uvu = optimal_measurement(feature.left.uv_px, feature.right.uv_px);
+    const std::optional<Eigen::Vector3d> p = rig_.triangulate(uvu);
+    if (!p) return true;
+    feature.p_kf = *p;
+    feature.covariance_kf = point_covariance(rig_, uvu, options_.registration.sigma_px);
+    ++feature.key_frames;
+    return false;
+  });
+}
+
+void FrontEnd::carry_over(const Pose& T_kf_left) {
+  const Pose T_left_kf = T_kf_left.inverse();
+  const Eigen::Matrix3d R = T_left_kf.linear();
+  for (Feature& feature : tracker_.features()) {
+    feature.p_kf = T_left_kf * feature.p_kf;
+    feature.covariance_kf = R * feature.covariance_kf * R.transpose();
+    ++feature.key_frames;
+  }
+}
+
+/// New features, their match in the right image and their first reconstruction. Sections 2.1 and 2.2.
+void FrontEnd::add_features(const StereoFrame& frame, StageClock& clock) {
+  kf_frame_ = frame.index;
+  occupied_.clear();
+  for (const Feature& feature : tracker_.features()) occupied_.push_back(feature.left.uv_px);
+  constexpr double kStandardArea_px = 640 * 480;
+  const double share = std::max(1.0, rig_.width_px * rig_.height_px / kStandardArea_px);
+  const int wanted = cvRound(share * options_.tracking.max_features) - static_cast<int>(occupied_.size());
+  const std::vector<Eigen::Vector2f>& corners = detector_.detect(frame.left, occupied_, wanted, kBorder_px);
+  clock.lap(Stage::kDetection);
+  dense_.compute(frame.left, frame.right);
+  clock.lap(Stage::kDisparity);
+  for (const Eigen::Vector2f& corner : corners) {
+    Feature* feature = tracker_.add(left_, corner);
+    if (feature == nullptr || !match(frame.index, *feature)) continue;
+    const Eigen::Vector3d uvu = optimal_measurement(feature->left.uv_px, feature->right.uv_px);
+    feature->in_right = true;
+    feature->first_frame = frame.index;
+    feature->p_kf = *rig_.triangulate(uvu);
+    feature->covariance_kf = point_covariance(rig_, uvu, options_.registration.sigma_px);
+    feature->key_frames = 1;
+  }
+  tracker_.remove_if([](const Feature& f) { return !f.in_right; });
+  measure_key_frame();
+  clock.lap(Stage::kStereo);
+}
+
+bool FrontEnd::match(int64_t frame, Feature& feature) const {
+  if (replaced(OracleStage::kStereo)) {
+    const std::optional<double> disparity = oracle_->disparity_px(frame, feature.left.uv_px.cast<double>());
+    if (!disparity) return false;
+    feature.right = feature.left;
+    feature.right.uv_px.x() -= static_cast<float>(*disparity);
+    return matcher_.plausible(feature.left.uv_px, feature.right.uv_px);
+  }
+  const auto right = matcher_.match(tracker_.first_view(feature), feature.left, dense_, right_);
+  if (right) feature.right = *right;
+  return right.has_value();
+}
+
+void FrontEnd::measure_key_frame() {
+  kf_features_ = tracker_.features().size();
+  depths_m_.clear();
+  for (const Feature& feature : tracker_.features()) depths_m_.push_back(feature.p_kf.z());
+  if (depths_m_.empty()) return;
+  const auto middle = depths_m_.begin() + static_cast<std::ptrdiff_t>(depths_m_.size() / 2);
+  std::nth_element(depths_m_.begin(), middle, depths_m_.end());
+  kf_median_depth_m_ = *middle;
+}
+
+const std::vector<Eigen::Vector3f>& FrontEnd::dense_points(const StereoFrame& frame) {
+  dense_points_.clear();
+  dense_.sample(options_.dense_map.step_px, dense_points_);
+  if (!replaced(OracleStage::kStereo)) return dense_points_;
+  std::erase_if(dense_points_, [&](Eigen::Vector3f& uvu) {
+    const auto disparity = oracle_->disparity_px(frame.index, uvu.head<2>().cast<double>());
+    if (disparity) uvu.z() = uvu.x() - static_cast<float>(*disparity);
+    return !disparity;
+  });
+  return dense_points_;
+}
+
+}  // namespace groundloop::slam

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "slam/features/detector.h"
+#include "slam/pipeline/options.h"
+#include "slam/pipeline/stage_clock.h"
+#include "slam/registration/registration.h"
+#include "slam/stereo/disparity.h"
+#include "slam/stereo/matcher.h"
+#include "slam/tracking/rotation_alignment.h"
+#include "slam/tracking/tracker.h"
+#include "slam/types/frame_result.h"
+#include "slam/types/oracle.h"
+#include "slam/types/stereo_frame.h"
+
+namespace groundloop::slam {
+
+/// The frame path's work on images: features and their reconstruction at key frames, their tracking and
+/// registration in between. It knows poses only within the current key frame. Sections 2.1 to 2.3 of the
+/// paper.
+class FrontEnd {
+ public:
+  /// @param oracle  answers in the place of a stage, in experiments; may be null, must outlive this
+  FrontEnd(const StereoRig& rig, const SlamOptions& options, const Oracle* oracle);
+
+  /// Takes the images of a new frame.
+  void see(const StereoFrame& frame, StageClock& clock);
+
+  /// Tracks the features of the last key frame and registers their new reconstruction with the old one.
+  /// @param T_kf_previous   pose of the previous frame in the last key frame
+  /// @param T_kf_predicted  where the new one should be; overwritten by a better guess when it was far off
+  const RegistrationResult& follow(const StereoFrame& frame, const Pose& T_kf_previous, Pose& T_kf_predicted,
+                                   StageClock& clock);
+
+  /// Makes the current frame the first key frame of a segment.
+  void start(const StereoFrame& frame, StageClock& clock);
+  /// Makes the current frame the next key frame: what agreed stays, new features join.
+  /// @param T_kf_left    its pose in the last key frame
+  /// @param reconstruct  true: every feature's point is triangulated anew; false: it is carried over
+  void renew(const StereoFrame& frame, const Pose& T_kf_left, bool reconstruct, StageClock& clock);
+
+  /// Features of the last key frame, with their points there.
+  std::vector<Feature>& features() { return tracker_.features(); }
+  const std::vector<Feature>& features() const { return tracker_.features(); }
+  template <class Predicate>
+  void remove_if(Predicate gone) {
+    tracker_.remove_if(gone);
+  }
+  void forget_features() { tracker_.clear(); }
+
+  const ImagePyramid& left() const { return left_; }
+  const ImagePyramid& right() const { return right_; }
+  /// Of the last key frame.
+  const DenseDisparity& dense() const { return dense_; }
+  /// Points of the dense map, as (u_left, v, u_right), for the occupancy map. Reused at the next call.
+  const std::vector<Eigen::Vector3f>& dense_points(const StereoFrame& frame);
+
+  size_t key_frame_features() const { return kf_features_; }       ///< reconstructed at the last key frame
+  double key_frame_depth_m() const { return kf_median_depth_m_; }  ///< median of theirs
+
+ private:
+  bool replaced(OracleStage stage) const { return oracle_ != nullptr && oracle_->replaces(stage); }
+  void look_up_tracks(int64_t frame);
+  void register_points(const StereoFrame& frame, const Pose& T_kf_predicted);
+  void triangulate_again();
+  void carry_over(const Pose& T_kf_left);
+  void add_features(const StereoFrame& frame, StageClock& clock);
+  bool match(int64_t frame, Feature& feature) const;
+  void measure_key_frame();
+
+  StereoRig rig_;
+  SlamOptions options_;
+  const Oracle* oracle_;
+  Detector detector_;
+  DenseDisparity dense_;
+  StereoMatcher matcher_;
+  Tracker tracker_;
+  RotationAlignment rotation_;
+  Registration registration_;
+
+  ImagePyramid left_, right_;
+  std::vector<PointPair> pairs_;
+  std::vector<size_t> pair_feature_;  ///< index into features(), per pair
+  RegistrationResult registered_;
+  std::vector<Eigen::Vector2f> occupied_;
+  std::vector<double> depths_m_;
+  std::vector<Eigen::Vector3f> dense_points_;
+
+  int64_t kf_frame_ = 0;
+  size_t kf_features_ = 0;
+  double kf_median_depth_m_ = 0;
+};
+
+}  // namespace groundloop::slam
