@@ -133,7 +133,7 @@ Placement summit(const AlignmentScore& score, Placement x) {
 /// Weight of a score as log-likelihood. Neighbouring cells err together (the same wall, seen from the same
 /// side), so a map counts as this many cells, however many it has; the number makes the mean NEES about right
 /// over the maps of 10 to 20 key frames that the tests draw.
-constexpr double kIndependentCells = 450;
+constexpr double kIndependentCells = 600;
 
 /// Covariance of the placement from the shape of the score around its summit: the second moment of its
 /// likelihood over a lattice along the axes of the curvature there, three deviations to every side.
