@@ -114,7 +114,7 @@ TEST(StereoMatcher, PlausibleCountsFromInfinity) {
   StereoRig rig = rig_of_size();
   rig.cx_right_px = rig.cx_px - 10;  // points at infinity have a disparity of 10
   const StereoMatcher matcher(rig, {}, {});
-  EXPECT_TRUE(matcher.plausible({100, 50}, {85, 50.9F}));
+  EXPECT_TRUE(matcher.plausible({100, 50}, {85, 50.7F}));
   EXPECT_FALSE(matcher.plausible({100, 50}, {85, 51.1F}));
   EXPECT_FALSE(matcher.plausible({100, 50}, {85, 48.9F}));
   EXPECT_TRUE(matcher.plausible({100, 50}, {88.9F, 50}));
