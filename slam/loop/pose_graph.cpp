@@ -4,6 +4,8 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "slam/adjustment/relative_pose.h"
 
@@ -65,12 +67,23 @@ class NormalEquations {
 
   /// Step that decreases the cost; empty when there is none.
   Eigen::VectorXd solve(double damping) {
+    if (!factorise(damping)) return {};
+    return factor_.solve(g_);
+  }
+
+  bool factorise(double damping) {
     H_.diagonal() = (1 + damping) * diagonal_;
     if (!analysed_) factor_.analyzePattern(H_);
     analysed_ = true;
     factor_.factorize(H_);
-    if (factor_.info() != Eigen::Success) return {};
-    return factor_.solve(g_);
+    return factor_.info() == Eigen::Success;
+  }
+
+  /// Six columns of the covariance of all free nodes, after factorise(); zero for a fixed node.
+  Eigen::MatrixXd covariance(int row) const {
+    Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(g_.size(), 6);
+    if (row >= 0) unit.middleRows<6>(row).setIdentity();
+    return factor_.solve(unit);
   }
 
  private:
@@ -108,6 +121,18 @@ bool anchored(const std::vector<bool>& fixed, const std::vector<PoseGraphEdge>& 
   return std::find(held.begin(), held.end(), false) == held.end();
 }
 
+/// Per node the first of its six unknowns, -1 for a fixed one; and how many there are.
+std::pair<std::vector<int>, int> rows_of(const std::vector<bool>& fixed) {
+  std::vector<int> row(fixed.size(), -1);
+  int unknowns = 0;
+  for (size_t i = 0; i < row.size(); ++i) {
+    if (fixed[i]) continue;
+    row[i] = unknowns;
+    unknowns += 6;
+  }
+  return {row, unknowns};
+}
+
 std::vector<Pose> moved(const std::vector<Pose>& T_map_node, const std::vector<int>& row,
                         const Eigen::VectorXd& step) {
   std::vector<Pose> out = T_map_node;
@@ -123,13 +148,7 @@ PoseGraphSolution solve_pose_graph(const std::vector<Pose>& T_map_node, const st
                                    const std::vector<PoseGraphEdge>& edges) {
   PoseGraphSolution best;
   best.T_map_node = T_map_node;
-  std::vector<int> row(T_map_node.size(), -1);
-  int unknowns = 0;
-  for (size_t i = 0; i < row.size(); ++i) {
-    if (fixed[i]) continue;
-    row[i] = unknowns;
-    unknowns += 6;
-  }
+  const auto [row, unknowns] = rows_of(fixed);
   NormalEquations equations(row, unknowns, edges);
   best.cost = equations.measure(best);
   if (!anchored(fixed, edges)) return best;
@@ -162,6 +181,23 @@ PoseGraphSolution solve_pose_graph(const std::vector<Pose>& T_map_node, const st
   }
   best.usable = true;
   return best;
+}
+
+Matrix6d relative_covariance(const PoseGraphSolution& solution, const std::vector<bool>& fixed,
+                             const std::vector<PoseGraphEdge>& edges, int from, int to) {
+  PoseGraphSolution accepted = solution;
+  for (double& weight : accepted.weight) weight = weight < kRejected ? 0 : 1;
+  const auto [row, unknowns] = rows_of(fixed);
+  if (unknowns == 0 || from == to) return Matrix6d::Zero();
+  NormalEquations equations(row, unknowns, edges);
+  equations.linearise(accepted);
+  if (!equations.factorise(0)) return Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  const Eigen::MatrixXd by_from = equations.covariance(row[from]), by_to = equations.covariance(row[to]);
+  const auto block = [&](const Eigen::MatrixXd& columns, int node) -> Matrix6d {
+    return row[node] < 0 ? Matrix6d::Zero() : Matrix6d(columns.middleRows<6>(row[node]));
+  };
+  const Pose T_from_to = solution.T_map_node[from].inverse() * solution.T_map_node[to];
+  return relative_pose_covariance(T_from_to, block(by_from, from), block(by_to, from), block(by_to, to));
 }
 
 }  // namespace groundloop::slam

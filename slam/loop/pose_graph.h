@@ -14,13 +14,16 @@ struct PoseGraphEdge {
   bool robust = false;                         ///< may be wrong: loses weight as it contradicts the others
 };
 
+/// Weight below which a robust edge counts as wrong.
+constexpr double kRejected = 0.1;
+
 /// Where the edges pull the nodes.
 struct PoseGraphSolution {
   bool usable = false;  ///< false: the edges do not determine the nodes, poses are those given
   std::vector<Pose> T_map_node;
   std::vector<double> squared_misfit;  ///< per edge: e^T C^-1 e, six degrees of freedom
-  std::vector<double> weight;          ///< per edge, 1 if not robust: below 0.1 the others contradict it
-  double cost = 0;                     ///< sum over edges of squared_misfit, robust ones by the Lorentzian
+  std::vector<double> weight;  ///< per edge, 1 if not robust: below kRejected the others contradict it
+  double cost = 0;             ///< sum over edges of squared_misfit, robust ones by the Lorentzian
   int iterations = 0;
 };
 
@@ -33,5 +36,11 @@ struct PoseGraphSolution {
 /// @param fixed  per node; at least one in every connected part
 PoseGraphSolution solve_pose_graph(const std::vector<Pose>& T_map_node, const std::vector<bool>& fixed,
                                    const std::vector<PoseGraphEdge>& edges);
+
+/// What a solved graph knows of T_from_to, two nodes of one connected part: covariance of a right
+/// perturbation in `to`, all other nodes integrated out. Edges count in full, rejected ones not at all.
+/// @param solution  of the same graph, usable
+Matrix6d relative_covariance(const PoseGraphSolution& solution, const std::vector<bool>& fixed,
+                             const std::vector<PoseGraphEdge>& edges, int from, int to);
 
 }  // namespace groundloop::slam
