@@ -11,19 +11,6 @@ std::string_view name_of(const mjModel& model, int type, int id) {
   return name == nullptr ? std::string_view() : std::string_view(name);
 }
 
-/// The robot's actuator whose name ends so, -1 when there is none.
-int find_actuator(const World& world, std::string_view ending) {
-  const mjModel& model = world.model();
-  for (int actuator = 0; actuator < model.nu; ++actuator) {
-    if (!name_of(model, mjOBJ_ACTUATOR, actuator).ends_with(ending)) continue;
-    if (model.actuator_trntype[actuator] != mjTRN_JOINT) continue;
-    const int joint = model.actuator_trnid[2 * actuator];
-    const bool own = model.body_rootid[model.jnt_bodyid[joint]] == world.robot_body();
-    if (own && model.jnt_type[joint] == mjJNT_HINGE) return actuator;
-  }
-  return -1;
-}
-
 /// Radius of the round geom of a wheel that touches the floor; 0 when there is none.
 double rolling_radius_m(const mjModel& model, int joint) {
   const int body = model.jnt_bodyid[joint];
@@ -37,16 +24,29 @@ double rolling_radius_m(const mjModel& model, int joint) {
   return 0;
 }
 
-double wheel_acceleration_radps2(const mjModel& model) {
+}  // namespace
+
+int find_hinge_actuator(const World& world, std::string_view ending) {
+  const mjModel& model = world.model();
+  for (int actuator = 0; actuator < model.nu; ++actuator) {
+    if (!name_of(model, mjOBJ_ACTUATOR, actuator).ends_with(ending)) continue;
+    if (model.actuator_trntype[actuator] != mjTRN_JOINT) continue;
+    const int joint = model.actuator_trnid[2 * actuator];
+    const bool own = model.body_rootid[model.jnt_bodyid[joint]] == world.robot_body();
+    if (own && model.jnt_type[joint] == mjJNT_HINGE) return actuator;
+  }
+  return -1;
+}
+
+double find_numeric(const World& world, std::string_view ending) {
+  const mjModel& model = world.model();
   for (int numeric = 0; numeric < model.nnumeric; ++numeric) {
-    if (name_of(model, mjOBJ_NUMERIC, numeric).ends_with("wheel_acceleration_radps2")) {
+    if (name_of(model, mjOBJ_NUMERIC, numeric).ends_with(ending)) {
       return model.numeric_data[model.numeric_adr[numeric]];
     }
   }
   return 0;
 }
-
-}  // namespace
 
 Drive find_drive(const World& world, const std::string& robot_file) {
   const mjModel& model = world.model();
@@ -55,13 +55,13 @@ Drive find_drive(const World& world, const std::string& robot_file) {
     problems.push_back({robot_file, 0, what, "missing", wanted});
   };
   Drive drive;
-  drive.left_actuator = find_actuator(world, "left_wheel");
-  drive.right_actuator = find_actuator(world, "right_wheel");
+  drive.left_actuator = find_hinge_actuator(world, "left_wheel");
+  drive.right_actuator = find_hinge_actuator(world, "right_wheel");
   if (drive.left_actuator < 0)
     missing("left_wheel", "a velocity actuator of that name on a hinge joint of the robot");
   if (drive.right_actuator < 0)
     missing("right_wheel", "a velocity actuator of that name on a hinge joint of the robot");
-  drive.limits.wheel_acceleration_radps2 = wheel_acceleration_radps2(model);
+  drive.limits.wheel_acceleration_radps2 = find_numeric(world, "wheel_acceleration_radps2");
   if (!(drive.limits.wheel_acceleration_radps2 > 0)) {
     missing("wheel_acceleration_radps2", "<custom><numeric> of that name, above 0");
   }

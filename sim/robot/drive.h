@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "sim/robot/planned_path.h"
 #include "sim/world/world.h"
@@ -16,6 +17,11 @@ struct Drive {
   int right_qpos = -1;
   DriveLimits limits;  ///< radius of the geoms that touch the floor, distance of the joints, actuator limits
 };
+
+/// The robot's actuator on a hinge joint whose name ends so, -1 when there is none.
+int find_hinge_actuator(const World& world, std::string_view ending);
+/// First value of the `<custom><numeric>` whose name ends so, 0 when there is none.
+double find_numeric(const World& world, std::string_view ending);
 
 /// @param robot_file  named in messages
 /// @throws InputError naming what the robot lacks, all at once

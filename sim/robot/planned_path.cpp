@@ -30,6 +30,25 @@ SpeedRamp ramp_for(double length_m, double turn_rad, const Plan& plan, const Dri
   return {rate, at_most(limits.wheel_acceleration_radps2, wheel_rad)};
 }
 
+/// The fastest ramp between two directions of the head, both axes at once.
+SpeedRamp ramp_for(const HeadAngles& from, const HeadAngles& to, const Plan& plan,
+                   double look_acceleration_radps2) {
+  const double way_rad = std::max(std::abs(to.pan_rad - from.pan_rad), std::abs(to.tilt_rad - from.tilt_rad));
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  if (way_rad == 0) return {kNone, kNone};
+  return {radians(plan.look_speed_degps) / way_rad, look_acceleration_radps2 / way_rad};
+}
+
+/// A part of the way from one direction of the head to another.
+HeadAngles between(const HeadAngles& from, const HeadAngles& to, double fraction) {
+  return {from.pan_rad + fraction * (to.pan_rad - from.pan_rad),
+          from.tilt_rad + fraction * (to.tilt_rad - from.tilt_rad)};
+}
+
+HeadAngles turned_at(const HeadAngles& from, const HeadAngles& to, double rate) {
+  return {rate * (to.pan_rad - from.pan_rad), rate * (to.tilt_rad - from.tilt_rad)};
+}
+
 }  // namespace
 
 SpeedRamp::SpeedRamp(double rate_limit, double acceleration)
@@ -54,13 +73,18 @@ double SpeedRamp::rate(double time_s) const {
   return std::min({rate_, acceleration_ * time_s, acceleration_ * left_s});
 }
 
-PlannedPath::PlannedPath(const StartPose& start, const Plan& plan, const DriveLimits& limits)
+PlannedPath::PlannedPath(const StartPose& start, const Plan& plan, const DriveLimits& limits,
+                         double look_acceleration_radps2)
     : T_world_end_{start.x_m, start.y_m, radians(start.yaw_deg)} {
   for (const Segment& segment : plan.segments) {
     const auto [length_m, turn_rad] = motion_of(segment);
-    const SpeedRamp ramp = ramp_for(length_m, turn_rad, plan, limits);
+    HeadAngles head = head_end_;
+    if (segment.look) head = {radians(segment.look->pan_deg), radians(segment.look->tilt_deg)};
+    const SpeedRamp ramp = segment.look ? ramp_for(head_end_, head, plan, look_acceleration_radps2)
+                                        : ramp_for(length_m, turn_rad, plan, limits);
     const double segment_s = segment.stop_s.value_or(ramp.duration_s());
-    pieces_.push_back({T_world_end_, length_m, turn_rad, duration_s_, segment_s, ramp});
+    pieces_.push_back({T_world_end_, length_m, turn_rad, duration_s_, segment_s, ramp, head_end_, head});
+    head_end_ = head;
     T_world_end_ = driven(T_world_end_, length_m, turn_rad);
     duration_s_ += segment_s;
     length_m_ += std::abs(length_m);
@@ -76,7 +100,7 @@ Pose2 PlannedPath::at_fraction(size_t segment, double fraction) const {
 }
 
 PlannedState PlannedPath::at(double time_s) const {
-  if (pieces_.empty()) return {T_world_end_, {}, 0, 0};
+  if (pieces_.empty()) return {T_world_end_, {}, 0, 0, {}, {}};
   const auto after = std::upper_bound(pieces_.begin() + 1, pieces_.end(), time_s,
                                       [](double t_s, const Piece& piece) { return t_s < piece.start_s; });
   const auto segment = static_cast<size_t>(after - pieces_.begin()) - 1;
@@ -84,7 +108,12 @@ PlannedState PlannedPath::at(double time_s) const {
   const double within_s = time_s - piece.start_s;
   const double rate = piece.ramp.rate(within_s);
   const double fraction = piece.ramp.progress(within_s);
-  return {at_fraction(segment, fraction), {rate * piece.length_m, rate * piece.turn_rad}, segment, fraction};
+  return {at_fraction(segment, fraction),
+          {rate * piece.length_m, rate * piece.turn_rad},
+          segment,
+          fraction,
+          between(piece.head_start, piece.head_end, fraction),
+          turned_at(piece.head_start, piece.head_end, rate)};
 }
 
 }  // namespace groundloop::sim

@@ -21,6 +21,12 @@ struct BodyTwist {
   double turn_rate_radps = 0;
 };
 
+/// Where the head looks, from straight ahead.
+struct HeadAngles {
+  double pan_rad = 0;   ///< positive to the left
+  double tilt_rad = 0;  ///< positive up
+};
+
 /// Progress from 0 to 1 from rest to rest: rises with `rate_limit` at most, and `acceleration` [1/s, 1/s^2].
 class SpeedRamp {
  public:
@@ -38,14 +44,19 @@ struct PlannedState {
   BodyTwist twist;
   size_t segment = 0;
   double fraction = 0;  ///< of the segment driven, 0 to 1
+  HeadAngles head = {};
+  HeadAngles head_rate = {};  ///< d head / dt [rad/s]
 };
 
 /// The plan as a pose for every time, in closed form. Every segment starts and ends at rest, with a
 /// trapezoidal speed between: where the curvature jumps, wheel speeds may not, so the robot stops there.
-/// Speeds keep to the plan's and to what the wheels can do.
+/// Speeds keep to the plan's and to what the wheels can do. While the head turns the robot stands; then it
+/// drives on with the head turned, until told otherwise.
 class PlannedPath {
  public:
-  PlannedPath(const StartPose& start, const Plan& plan, const DriveLimits& limits);
+  /// @param look_acceleration_radps2  of the head; needed when the plan looks
+  PlannedPath(const StartPose& start, const Plan& plan, const DriveLimits& limits,
+              double look_acceleration_radps2 = 1);
 
   double duration_s() const { return duration_s_; }
   double length_m() const { return length_m_; }  ///< of the body origin's way
@@ -66,9 +77,11 @@ class PlannedPath {
     double start_s;
     double duration_s;
     SpeedRamp ramp;
+    HeadAngles head_start, head_end;
   };
   std::vector<Piece> pieces_;
   Pose2 T_world_end_;
+  HeadAngles head_end_;
   double duration_s_ = 0;
   double length_m_ = 0;
 };

@@ -172,7 +172,6 @@ void WorldChoice::check(ConfigReader& reader) const {
 void Segment::check(ConfigReader& reader) const {
   const int members = straight_m.has_value() + arc.has_value() + stop_s.has_value() + look.has_value();
   if (members != 1) reader.problem("", "exactly one of: straight_m, arc, stop_s, look");
-  if (look) reader.problem("look", "no look segment: none of the robots has a pan-tilt head yet");
 }
 
 void Plan::check(ConfigReader& reader) const {

@@ -115,11 +115,13 @@ struct ArcSegment {
 };
 
 struct LookSegment {
-  double pan_deg = 0;  ///< positive looks left
+  double pan_deg = 0;   ///< positive looks left
+  double tilt_deg = 0;  ///< positive looks up
 
   template <class Archive>
   void visit(Archive& a) {
-    a("pan_deg", pan_deg, {.min = -180, .max = 180, .required = true});
+    a("pan_deg", pan_deg, {.min = -180, .max = 180, .required = true, .doc = "positive looks left"});
+    a("tilt_deg", tilt_deg, {.min = -90, .max = 90, .doc = "positive looks up"});
   }
 };
 
@@ -138,7 +140,7 @@ struct Segment {
     a("straight_m", straight_m, {.min = -1000, .max = 1000, .doc = "negative drives backwards"});
     a("arc", arc, {.doc = "circle driven forwards"});
     a("stop_s", stop_s, {.min = 0, .max = 3600, .doc = "stand still"});
-    a("look", look, {.doc = "turn the head (needs a robot with a pan-tilt head; not supported yet)"});
+    a("look", look, {.doc = "turn the head, standing still (needs a robot with a pan-tilt head)"});
   }
   void check(ConfigReader& reader) const;
 };
@@ -149,6 +151,7 @@ struct Plan {
   Feedback feedback = Feedback::kPlan;  ///< who steers: open loop, or correction by a pose
   double speed_mps = 0.2;
   double turn_rate_limit_degps = 30;  ///< arcs slow down so that the heading never turns faster
+  double look_speed_degps = 20;       ///< of a head that turns
   std::vector<Segment> segments;
   std::optional<PlanRecipe> generate;  ///< in place of segments, until they are made (sim/generate)
 
@@ -158,6 +161,7 @@ struct Plan {
     a("speed_mps", speed_mps, {.min = 0.01, .max = 1.2, .required = true});
     a("turn_rate_limit_degps", turn_rate_limit_degps,
       {.min = 1, .max = 300, .doc = "arcs slow down so that the heading never turns faster"});
+    a("look_speed_degps", look_speed_degps, {.min = 0.1, .max = 300, .doc = "of a head that turns"});
     a("segments", segments, {.doc = "driven one after the other"});
     a("generate", generate, {.doc = "straights and arcs through the world, drawn from a seed"});
   }

@@ -9,6 +9,7 @@
 #include "sim/robot/controller.h"
 #include "sim/robot/drive.h"
 #include "sim/robot/odometry.h"
+#include "sim/robot/pan_tilt.h"
 #include "sim/robot/planned_path.h"
 #include "sim/robot/wheel_angles.h"
 #include "sim/simulation/collision_focus.h"
@@ -67,6 +68,8 @@ struct Simulation::Impl {
   void take_slam_pose(int64_t of_exposure);
   std::array<double, 2> rolled_rad(const mjData& data) const;
   std::shared_ptr<mjData> state_at(int64_t stamp_ns);
+  slam::Pose T_world_left(const mjData& data) const;
+  slam::Pose planned_T_body_left(double time_s) const;
   Exposure expose();
   void tell_expected_motion(Exposure& exposure);
 
@@ -82,8 +85,9 @@ struct Simulation::Impl {
   std::string scenario_file;
   int start_line;
   Drive drive;
+  slam::Pose T_body_left, T_left_right;  ///< as mounted, with the head straight ahead
+  std::optional<PanTilt> head_mount;
   PlannedPath path;
-  slam::Pose T_body_left, T_left_right;
   int64_t step_ns, period_ns, exposures;
 
   World::DataPtr state;
@@ -114,9 +118,11 @@ Simulation::Impl::Impl(const World& world_, const HeadModel& head, const Scenari
       scenario_file(scenario.file),
       start_line(scenario.robot.start.line),
       drive(assumed_drive(world, scenario.robot)),
-      path(scenario.robot.start, scenario.plan, drive.limits),
       T_body_left(head.rig().T_body_left),
       T_left_right(Eigen::Translation3d(head.baseline_m, 0, 0)),
+      head_mount(PanTilt::find(world, scenario.robot.model, T_body_left)),
+      path(scenario.robot.start, scenario.plan, drive.limits,
+           head_mount ? head_mount->acceleration_radps2() : 1),
       step_ns(step_ns_of(model, scenario)),
       period_ns(head.period_ns()),
       exposures(static_cast<int64_t>(std::floor(path.duration_s() * 1e9 / static_cast<double>(period_ns))) +
@@ -128,6 +134,7 @@ Simulation::Impl::Impl(const World& world_, const HeadModel& head, const Scenari
       angles({0, 0}),
       wheels(drive.limits, 0, 0),
       odometry(scenario.robot.odometry, drive.limits, scenario.seed, 0, 0) {
+  check_looks(scenario, head_mount);
   T_world_start = path.at(0).T_world_body;
   update_kinematics(model, *state);
   check_path(scenario, path, TruthWorld(world, *state));
@@ -181,7 +188,8 @@ void Simulation::Impl::take_slam_pose(int64_t of_exposure) {
   if (of_exposure < 0) return;
   const std::optional<slam::Pose> T_map_left = core_pose(of_exposure);
   if (!T_map_left) return;
-  const Pose2 T_map_body = to_pose2(*T_map_left * T_body_left.inverse());
+  const double time_s = static_cast<double>(of_exposure * period_ns) * 1e-9;
+  const Pose2 T_map_body = to_pose2(*T_map_left * planned_T_body_left(time_s).inverse());
   const Pose2& T_odom_body = T_odom_body_at[static_cast<size_t>(of_exposure)];
   if (!T_plan_map) T_plan_map = composed(composed(T_plan_odom, T_odom_body), inverse(T_map_body));
   T_plan_odom = composed(composed(*T_plan_map, T_map_body), inverse(T_odom_body));
@@ -199,6 +207,7 @@ void Simulation::Impl::step() {
   const WheelFaults wheel = wheel_faults(drive_errors, faults, time_s);
   state->ctrl[drive.left_actuator] = speeds.left_radps * wheel.grip[0];
   state->ctrl[drive.right_actuator] = speeds.right_radps * wheel.grip[1];
+  if (head_mount) head_mount->steer(planned, *state);
   focus.update(*state);
   mj_step(&focus.model(), state.get());
   angles.update(rolled_rad(*state), wheel);
@@ -214,6 +223,15 @@ std::shared_ptr<mjData> Simulation::Impl::state_at(int64_t stamp_ns) {
   update_kinematics(model, *copy);
   copy->time = static_cast<double>(stamp_ns) * 1e-9;
   return copy;
+}
+
+slam::Pose Simulation::Impl::T_world_left(const mjData& data) const {
+  return head_mount ? head_mount->T_world_left(data) : body_pose(world, data) * T_body_left;
+}
+
+/// Where the plan has the left camera on the robot, which knows how it has told its head to turn.
+slam::Pose Simulation::Impl::planned_T_body_left(double time_s) const {
+  return head_mount ? head_mount->T_body_left(path.at(time_s).head) : T_body_left;
 }
 
 Exposure Simulation::Impl::expose() {
@@ -234,9 +252,9 @@ Exposure Simulation::Impl::expose() {
 
   // truth
   exposure.T_world_body = body_pose(world, *exposure.state);
-  exposure.T_world_left = exposure.T_world_body * T_body_left;
-  exposure.T_world_right = body_pose(world, *exposure.state_right) * T_body_left * T_left_right *
-                           T_calibrated_right(faults, time_s);
+  exposure.T_world_left = T_world_left(*exposure.state);
+  exposure.T_world_right =
+      T_world_left(*exposure.state_right) * T_left_right * T_calibrated_right(faults, time_s);
 
   tell_expected_motion(exposure);
   return exposure;
@@ -257,10 +275,10 @@ void Simulation::Impl::tell_expected_motion(Exposure& exposure) {
   exposure.T_plan_body = to_pose(composed(kidnapping.T_world_plan(), planned));
   const Pose2 expected =
       feedback == Feedback::kOdometry ? composed(T_world_start, reading.T_odom_body()) : planned;
-  const slam::Pose T_world_left = to_pose(expected) * T_body_left;
+  const slam::Pose T_world_now = to_pose(expected) * planned_T_body_left(time_s);
   exposure.T_previous_left =
-      exposure.index == 0 ? slam::Pose::Identity() : T_world_expected_left.inverse() * T_world_left;
-  T_world_expected_left = T_world_left;
+      exposure.index == 0 ? slam::Pose::Identity() : T_world_expected_left.inverse() * T_world_now;
+  T_world_expected_left = T_world_now;
 }
 
 Simulation::Simulation(const World& world, const HeadModel& head, const Scenario& scenario,

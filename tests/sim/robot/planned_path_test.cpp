@@ -127,5 +127,33 @@ TEST(PlannedPath, SegmentsWithoutMotionTakeNoTime) {
   EXPECT_NEAR(path.at(path.duration_s()).T_world_body.x_m, 1, 1e-12);
 }
 
+TEST(PlannedPath, TheHeadTurnsWhileTheRobotStandsAndStaysTurned) {
+  Segment left, right;
+  left.look = LookSegment{90, 0};
+  right.look = LookSegment{-30, 30};
+  Plan plan;
+  plan.speed_mps = 0.2;
+  plan.look_speed_degps = 20;
+  plan.segments = {left, straight(1), right, right, stop(1)};
+  const PlannedPath path({}, plan, kLimits, 2);
+  const double speed_radps = 20 * kPi / 180;
+  const double first_s = 90 / 20.0 + speed_radps / 2;  // ramps of 2 rad/s^2
+  EXPECT_NEAR(path.at(first_s / 2).head.pan_rad, kPi / 4, 1e-12);
+  EXPECT_NEAR(path.at(first_s / 2).head_rate.pan_rad, speed_radps, 1e-12);
+  EXPECT_EQ(path.at(first_s / 2).twist.speed_mps, 0);
+  EXPECT_EQ(path.at(first_s / 2).T_world_body.x_m, 0);
+  const double driving_s = first_s + 1;
+  EXPECT_NEAR(path.at(driving_s).head.pan_rad, kPi / 2, 1e-12);
+  EXPECT_EQ(path.at(driving_s).head_rate.pan_rad, 0);
+  EXPECT_GT(path.at(driving_s).twist.speed_mps, 0.1);
+  const PlannedState end = path.at(path.duration_s());
+  EXPECT_NEAR(end.head.pan_rad, -kPi / 6, 1e-12);
+  EXPECT_NEAR(end.head.tilt_rad, kPi / 6, 1e-12);
+  EXPECT_NEAR(end.T_world_body.x_m, 1, 1e-12);
+  // looking where it looks already takes no time
+  const double straight_s = 1 / 0.2 + 0.2 / 0.1 / 4;
+  EXPECT_NEAR(path.duration_s(), first_s + straight_s + 120 / 20.0 + speed_radps / 2 + 1, 1e-9);
+}
+
 }  // namespace
 }  // namespace groundloop::sim

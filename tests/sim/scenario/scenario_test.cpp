@@ -156,15 +156,26 @@ seed: -3
           "test.yaml:12: seed: -3: wanted a whole number"));
 }
 
-TEST_F(ScenarioFiles, WhatDoesNotExistYetIsRefusedClearly) {
+TEST_F(ScenarioFiles, LooksHaveAPanAndATilt) {
+  const Scenario s = load_scenario(write(kHead + R"(plan:
+  speed_mps: 0.2
+  segments: [{look: {pan_deg: 30}}, {look: {pan_deg: -60, tilt_deg: 10}}]
+)"));
+  EXPECT_EQ(s.plan.look_speed_degps, 20);
+  ASSERT_EQ(s.plan.segments.size(), 2u);
+  EXPECT_EQ(s.plan.segments[0].look->pan_deg, 30);
+  EXPECT_EQ(s.plan.segments[0].look->tilt_deg, 0);
+  EXPECT_EQ(s.plan.segments[1].look->tilt_deg, 10);
   EXPECT_THAT(
       messages(kHead + R"(plan:
   speed_mps: 0.2
-  segments: [{look: {pan_deg: 30}}]
+  look_speed_degps: 0
+  segments: [{look: {tilt_deg: 100}}]
 )"),
-      ElementsAre(
-          "test.yaml:8: plan.segments[0].look: {pan_deg: 30}: wanted no look segment: none of the robots "
-          "has a pan-tilt head yet"));
+      ElementsAre("test.yaml:8: plan.look_speed_degps: 0: wanted a number from 0.1 to 300",
+                  "test.yaml:9: plan.segments[0].look.pan_deg: missing: wanted a number from -180 to "
+                  "180",
+                  "test.yaml:9: plan.segments[0].look.tilt_deg: 100: wanted a number from -90 to 90"));
 }
 
 TEST_F(ScenarioFiles, FaultsAreATimeline) {
@@ -328,8 +339,8 @@ TEST_F(ScenarioFiles, ABadOverrideIsNamedAsOne) {
                        {"expect.map.f2.min", "1"},
                        {"plan.segments", "[{straight_m: }"}}),
       ElementsAre("--set: plan.speed_mps: fast: wanted a number from 0.01 to 1.2",
-                  "--set: plan.sped_mps: unknown key: wanted one of: feedback, segments, speed_mps, "
-                  "turn_rate_limit_degps (did you mean speed_mps?)",
+                  "--set: plan.sped_mps: unknown key: wanted one of: feedback, generate, "
+                  "look_speed_degps, segments, speed_mps, turn_rate_limit_degps (did you mean speed_mps?)",
                   AllOf(HasSubstr("--set: expect.map.f2: unknown key"), EndsWith("(did you mean map.f1?)")),
                   HasSubstr("--set: plan.segments: [{straight_m: }: wanted valid YAML"),
                   HasSubstr("--set: world: nowhere.xml: wanted an MJCF file that exists")));

@@ -195,7 +195,12 @@ TEST(Simulation, CoarsePhysicsIsRefused) {
   std::ifstream in("models/robots/p3dx.xml");
   std::string text{std::istreambuf_iterator<char>(in), {}};
   text.replace(text.find("timestep=\"0.002\""), 16, "timestep=\"0.01\"");
-  const auto coarse = std::filesystem::temp_directory_path() / "groundloop_simulation_coarse.xml";
+  const auto folder = std::filesystem::temp_directory_path() / "groundloop_simulation_coarse";
+  std::filesystem::create_directories(folder);
+  std::filesystem::copy(
+      "models/robots/p3dx", folder / "p3dx",  // what it includes
+      std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
+  const auto coarse = folder / "p3dx.xml";
   std::ofstream(coarse) << text;
 
   Scenario scenario = on_the_floor("  speed_mps: 0.2\n  segments: [{straight_m: 1}]\n");
