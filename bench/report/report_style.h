@@ -7,11 +7,11 @@ namespace groundloop::bench {
 inline constexpr const char* kReportStyle = R"css(
 :root{color-scheme:light dark;--ground:#f4f6f9;--card:#fff;--ink:#18212c;--soft:#5a6675;--edge:#dde3ea;--accent:#1f5fd0;
 --good:#0f7b4b;--good-ground:#e3f5ec;--bad:#b3243a;--bad-ground:#fbe7ea;--odd:#8a5a00;--odd-ground:#fdf1d8;--band:#f3a6b080;--pale:#bccbf0;
---s1:#4269d0;--s2:#e8963a;--s3:#d6455d;--s4:#3fa7a0;--s5:#6a9f3c;--s6:#b07aa1;--s7:#8c6d4f;--s8:#7f8a99}
+--s1:#4269d0;--s2:#e8963a;--s3:#d6455d;--s4:#3fa7a0;--s5:#6a9f3c;--s6:#b07aa1;--s7:#8c6d4f;--s8:#7f8a99;--s9:#c9b037}
 @media (prefers-color-scheme:dark){:root{--ground:#10151c;--card:#19212b;--ink:#e6ebf1;--soft:#9aa7b6;--edge:#2c3744;
 --accent:#7fb0ff;--good:#5fd7a0;--good-ground:#12352a;--bad:#ff8b9b;--bad-ground:#43202a;--odd:#f5c469;
 --odd-ground:#3d3115;--band:#c2405780;--pale:#33466f;--s1:#7c9bf2;--s2:#f2ad5c;--s3:#f2788c;--s4:#63c7c0;--s5:#97c766;--s6:#cf9fc4;
---s7:#b8987a;--s8:#a3adba}}
+--s7:#b8987a;--s8:#a3adba;--s9:#e3cf65}}
 *{box-sizing:border-box}
 body{margin:0;background:var(--ground);color:var(--ink);font:16px/1.55 system-ui,-apple-system,"Segoe UI",Roboto,
 "DejaVu Sans",sans-serif}

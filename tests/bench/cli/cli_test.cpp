@@ -265,6 +265,9 @@ TEST(Run, RefusesBadArgumentsBeforeAnythingRuns) {
   const Answer set = groundloop("run scenarios/smoke.yaml --set seed");
   EXPECT_EQ(set.exit_code, 2);
   EXPECT_EQ(set.err, "--set: seed: wanted key=value, such as slam.preset=paper\n");
+  const Answer oracle = groundloop("run scenarios/smoke.yaml --oracle depth");
+  EXPECT_EQ(oracle.exit_code, 2);
+  EXPECT_EQ(oracle.err, "--oracle: depth: wanted one of: tracking, stereo, motion, loops\n");
   const Answer junit = groundloop("run scenarios/smoke.yaml --junit no/such/folder/a.xml");
   EXPECT_EQ(junit.exit_code, 2);
   EXPECT_EQ(junit.err, "--junit: no/such/folder/a.xml: wanted a file in a writable folder\n");
@@ -278,6 +281,13 @@ TEST(Run, NamesAMissingScenario) {
   EXPECT_EQ(answer.exit_code, 2);
   EXPECT_THAT(answer.err, StartsWith("absent.yaml: no such file"));
   EXPECT_THAT(answer.err, Not(HasSubstr("internal error")));
+}
+
+TEST(Oracles, NamesAMissingScenario) {
+  const Answer answer = groundloop("oracles absent.yaml");
+  EXPECT_EQ(answer.exit_code, 2);
+  EXPECT_THAT(answer.err, StartsWith("absent.yaml: no such file"));
+  EXPECT_EQ(groundloop("oracles").exit_code, 2);
 }
 
 TEST(Replay, NamesAMissingFolder) {
