@@ -12,7 +12,7 @@ struct LoopOptions {
   int candidates = 3;              ///< stored views tried a key frame
   int min_age_frames = 150;        ///< younger views are the tracker's own ground
   int max_views = 1000;            ///< beyond it no further view is stored
-  int min_inliers = 25;            ///< landmarks that agree on one motion
+  int min_inliers = 30;            ///< landmarks that agree on one motion
   double min_inlier_ratio = 0.45;  ///< of the stored landmarks that should be seen now
   double min_reverse_ratio = 0.4;  ///< of the current landmarks that should be in the stored image
   int min_cells = 8;               ///< of an 8 x 6 grid over the image, that hold an agreeing landmark

@@ -132,7 +132,8 @@ TEST(LoopVerifier, IsNotDeceivedByACopyOfAPicture) {
   EXPECT_TRUE(verifier.verify(stored.view, same, std::nullopt, 1).accepted);
   const Verification found = verifier.verify(stored.view, copy, std::nullopt, 1);
   EXPECT_FALSE(found.accepted);
-  EXPECT_GE(found.link.inliers, 25) << "the picture itself must have been found for this to be a test";
+  EXPECT_GE(found.link.inliers, LoopOptions{}.min_inliers)
+      << "the picture itself must have been found for this to be a test";
   EXPECT_THAT(found.message, HasSubstr("stored landmarks found, 45 % needed"));
   // What is around the picture now was not there then: that alone would do.
   LoopOptions reverse_only;
