@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Loop, Revisits,
                                            Revisit{"Darker", moved(0.1, 0, 0.1, 0, 3, 0), {0.6, 10, 1.5, 0}},
                                            Revisit{
                                                "Brighter", moved(0.1, 0, 0.1, 0, -3, 0), {1.2, 15, 1.5, 0}}),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& revisit) { return std::string(revisit.param.name); });
 
 TEST(LoopVerifier, ItsErrorIsWithinItsCovariance) {
   const PaintedRoom room(2);
