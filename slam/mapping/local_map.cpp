@@ -10,6 +10,8 @@ namespace groundloop::slam {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr size_t kStride = 89, kLeap = 55;  ///< no common divisor
+constexpr int kSweptCells = 3;              ///< in a row, after which a ray has nothing to add
 
 /// Steps along a straight line from cell to cell (Amanatides and Woo, Eurographics 1987).
 class GridWalk {
@@ -104,7 +106,10 @@ bool LocalMap::in_band(double z_m) const {
 
 void LocalMap::add_key_frame(const Eigen::Vector3d& head_map, std::span<const MapPoint> points) {
   cover(head_map, points);
-  for (const MapPoint& point : points) trace(head_map, point);
+  // Far from each other in turn, not row by row, so that most rays soon run between others.
+  for (size_t first = 0; first < kStride; ++first) {
+    for (size_t i = first * kLeap % kStride; i < points.size(); i += kStride) trace(head_map, points[i]);
+  }
   close_key_frame();
 }
 
@@ -145,7 +150,7 @@ void LocalMap::move_window(int col_min, int row_min, int cols, int rows) {
   }
   col_min_ = col_min, row_min_ = row_min, cols_ = cols, rows_ = rows;
   const size_t size = static_cast<size_t>(cols) * rows * plane_count_;
-  if (size > cells_.size()) cells_.resize(size), key_frame_.resize(size);
+  if (size > cells_.size()) cells_.resize(size), key_frame_.resize(size), swept_.resize(size);
   for (size_t i = 0; i < observed_.size(); ++i) cells_[observed_[i]] = moved_[i];
 }
 
@@ -178,34 +183,48 @@ void LocalMap::trace(const Eigen::Vector3d& head_map, const MapPoint& point) {
   }
   if (!(begin_m < end_m)) return;
 
-  const double sure_m = range_m - margin;
-  LayerWalk layers(options_.layer_heights_m, head_map.z(), slope, begin_m);
-  const int layer_of_point =
-      LayerWalk(options_.layer_heights_m, head_map.z(), slope, range_m).layer_at(range_m);
-  const auto k_empty = options_.k_empty * trust;
   const auto k_occupied =
       obstacle ? options_.k_occupied * trust * std::min(1.0, 2 * options_.cell_m / margin) : 0.0;
-  FlogCell evidence{static_cast<float>(k_empty), 0, static_cast<float>(options_.k_confidence * trust)};
+  const FlogCell sure{static_cast<float>(options_.k_empty * trust), 0,
+                      static_cast<float>(options_.k_confidence * trust)};
 
-  GridWalk walk(head_map.head<2>() + begin_m * direction, direction, begin_m, options_.cell_m);
-  for (double rho_in_m = begin_m; rho_in_m < end_m; walk.advance()) {
-    const double rho_out_m = std::min(walk.exit_m(), end_m);
+  // From the end back to the head: rays come together there. Once one runs between a steeper and a flatter
+  // one that went the same way through the same layers, the rest of its way has been swept too.
+  const double z_end_m = head_map.z() + slope * end_m;
+  LayerWalk layers(options_.layer_heights_m, z_end_m, -slope, 0);
+  const int layer_of_point =
+      LayerWalk(options_.layer_heights_m, head_map.z(), slope, range_m).layer_at(range_m);
+  GridWalk walk(head_map.head<2>() + end_m * direction, -direction, 0, options_.cell_m);
+  int swept_cells = 0;
+  for (double rho_out_m = end_m; rho_out_m > begin_m && swept_cells < kSweptCells; walk.advance()) {
+    const double rho_in_m = std::max(end_m - walk.exit_m(), begin_m);
     const double rho_m = 0.5 * (rho_in_m + rho_out_m);
-    rho_in_m = rho_out_m;
-    int layer = layer_of_point;
-    if (rho_m < sure_m) {
-      layer = layers.layer_at(rho_m);
-    } else {
-      const double x = (range_m - rho_m) / margin;
-      evidence.empty = static_cast<float>(x > 0 ? k_empty * x * x : 0);
-      evidence.occupied = static_cast<float>(k_occupied * std::max(0.0, 1 - x * x));
-      if (!obstacle) layer = layers.layer_at(rho_m);
-    }
+    rho_out_m = rho_in_m;
     const size_t cell =
         (static_cast<size_t>(walk.cell[1] - row_min_) * cols_ + (walk.cell[0] - col_min_)) * plane_count_;
+    const double x = (range_m - rho_m) / margin;
+    FlogCell evidence = sure;
+    int layer = layers.layer_at(end_m - rho_m);
+    if (x <= 1) {
+      evidence.empty *= static_cast<float>(x > 0 ? x * x : 0);
+      evidence.occupied = static_cast<float>(k_occupied * std::max(0.0, 1 - x * x));
+      if (obstacle) layer = layer_of_point;
+    } else {
+      const FlogCell& known = key_frame_[cell + layer];
+      const bool known_free = known.empty >= sure.empty && known.confidence >= sure.confidence;
+      const bool swept = swept_[cell + layer].covers(static_cast<float>(slope));
+      swept_cells = known_free && swept ? swept_cells + 1 : 0;
+    }
     strongest(cell + layer, evidence);
     if (!options_.fuse_layers) strongest(cell + options_.layer_count(), evidence);
   }
+}
+
+bool LocalMap::Sweep::covers(float slope) {
+  if (slope >= low && slope <= high) return true;
+  low = std::min(low, slope);
+  high = std::max(high, slope);
+  return false;
 }
 
 void LocalMap::strongest(size_t index, const FlogCell& evidence) {
@@ -221,10 +240,12 @@ void LocalMap::close_key_frame() {
     FlogCell& cell = cells_[index];
     FlogCell& evidence = key_frame_[index];
     if (cell.confidence == 0) observed_.push_back(index);
+    if (options_.ends_deny_empty) evidence.empty *= 1 - evidence.occupied;
     cell.empty = fuzzy_or(cell.empty, evidence.empty);
     cell.occupied = fuzzy_or(cell.occupied, evidence.occupied);
     cell.confidence = fuzzy_or(cell.confidence, evidence.confidence);
     evidence = {};
+    swept_[index] = {};
   }
   in_key_frame_.clear();
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -56,6 +57,14 @@ class LocalMap {
   struct Place {
     int col, row, plane;
   };
+  /// Rays that crossed a cell as free space: from the flattest to the steepest.
+  struct Sweep {
+    float low = std::numeric_limits<float>::infinity();  ///< slope: rise over horizontal distance
+    float high = -std::numeric_limits<float>::infinity();
+
+    /// Whether a ray runs between them; if not, it is the new flattest or steepest.
+    bool covers(float slope);
+  };
   bool in_band(double z_m) const;
   double margin_m(const MapPoint& point) const;
   void cover(const Eigen::Vector3d& head_map, std::span<const MapPoint> points);
@@ -76,6 +85,7 @@ class LocalMap {
   std::vector<uint32_t> observed_;      ///< cells of it that are not zero
   std::vector<FlogCell> key_frame_;     ///< evidence of the key frame being added, largest over its rays
   std::vector<uint32_t> in_key_frame_;  ///< cells of it that are not zero
+  std::vector<Sweep> swept_;            ///< of those cells
   std::vector<FlogCell> moved_;         ///< used while the window moves
 };
 

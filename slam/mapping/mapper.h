@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -12,11 +13,33 @@
 
 namespace groundloop::slam {
 
-/// What a key frame saw of one point, kept so that a map can be built again at corrected poses.
-struct MapObservation {
-  Eigen::Vector3f uvu_px = Eigen::Vector3f::Zero();  ///< (u_left, v, u_right)
-  float weight = 1;                                  ///< trust in [0, 1]
+/// What a key frame saw of one point, kept so that a map can be built again at corrected poses: eight bytes,
+/// since there are thousands of them in a key frame. A map is always built from these, also the first time,
+/// so that building it again gives the same.
+class MapObservation {
+ public:
+  MapObservation() = default;
+  /// @param uvu_px    (u_left, v, u_right); positions 0 to 2047 px, disparities to +-511 px, else the nearest
+  /// @param weight    trust in [0, 1]
+  /// @param sigma_px  standard deviation of u_left - u_right, to 2 px; 0: that of the mapping options
+  MapObservation(const Eigen::Vector3f& uvu_px, float weight, float sigma_px = 0);
+
+  Eigen::Vector3d uvu_px() const {
+    const double u_left_px = u_left_ / kPositionUnits;
+    return {u_left_px, v_ / kPositionUnits, u_left_px - disparity_ / kDisparityUnits};
+  }
+  double weight() const { return weight_ / kWeightUnits; }
+  double sigma_px() const { return sigma_ / kSigmaUnits; }
+
+ private:
+  /// Steps in a pixel, or in 1.
+  static constexpr double kPositionUnits = 32, kDisparityUnits = 64, kSigmaUnits = 128, kWeightUnits = 255;
+
+  uint16_t u_left_ = 0, v_ = 0;
+  int16_t disparity_ = 0;
+  uint8_t weight_ = 0, sigma_ = 0;
 };
+static_assert(sizeof(MapObservation) == 8);
 
 /// Builds the global map from key frames: each one's points make a local map, which is then added to the
 /// global one. Section 2.4 of the paper.

@@ -158,8 +158,13 @@ TEST(GridMatcher, ABestPlaceAtTheEdgeIsRefused) {
 OccupancyMap measured_map(const std::vector<Pose>& T_world_left, const Pose& T_map_world, uint64_t seed) {
   const RoomWorld world = RoomWorld::laboratory();
   const StereoRig rig = laboratory_rig();
-  FlogGrid grid(FlogOptions{});
-  LocalMap local(FlogOptions{}, rig);
+  FlogOptions options;  // of a head that measures no better than this
+  options.layer_heights_m = {0.05, 0.5, 1.0, 1.5, 2.0};
+  options.ends_deny_empty = false;
+  options.k_empty = 0.4;
+  options.sigma_disparity_px = 0.25, options.sigma_max_m = 0.30;
+  FlogGrid grid(options);
+  LocalMap local(options, rig);
   for (size_t i = 0; i < T_world_left.size(); ++i) {
     auto points = measure(world, rig, T_world_left[i], 400, 0.25, 1000 * seed + i);
     for (MapPoint& point : points) point.p_map = T_map_world * point.p_map;

@@ -14,7 +14,9 @@ namespace {
 FlogOptions paper_band() {
   FlogOptions options;
   options.k_empty = 0.10, options.k_occupied = 0.25, options.k_confidence = 0.20;
+  options.sigma_disparity_px = 0.25, options.sigma_max_m = 0.30;
   options.fuse_layers = false;
+  options.ends_deny_empty = false;
   options.lambda = 0;
   options.max_range_m = 20;
   return options;
@@ -23,7 +25,7 @@ int band_of(const FlogOptions& options) { return options.layer_count(); }
 
 /// Share of trust that is left at a range, with the laboratory's rig and the default noise.
 double trust_at(double range_m) {
-  const FlogOptions options;
+  const FlogOptions options = paper_band();
   const StereoRig rig = laboratory_rig();
   const double rho_v_m =
       std::sqrt(options.sigma_max_m * rig.fx_px * rig.baseline_m / options.sigma_disparity_px);
@@ -209,6 +211,50 @@ TEST(LocalMap, FarOrUntrustedPointsAreLeftOut) {
   EXPECT_EQ(grid_of(options, {0, 0, 0.3}, {{{0, 0, 1}, 0.1, 1}}).map().geometry.cells(), 0U)
       << "straight above";
   EXPECT_EQ(grid_of(options, {0, 0, 0.3}, {}).map().geometry.cells(), 0U);
+}
+
+TEST(LocalMap, WhereOneRayEndsOthersSpeakLessForEmptiness) {
+  FlogOptions options;
+  options.layer_heights_m = {0.05, 2.0};
+  options.lambda = 0;
+  const auto cell_at_edge = [&](bool ends_deny_empty) {
+    options.ends_deny_empty = ends_deny_empty;
+    return grid_of(options, {0, 0.02, 0.35}, {{{2.025, 0.02, 0.73}, 0.001, 1}, {{4, 0.02, 0.35}, 0.02, 1}})
+        .cell(40, 0, 0);
+  };
+  const FlogCell denied = cell_at_edge(true), plain = cell_at_edge(false);
+  EXPECT_GT(plain.empty, 0.4);
+  EXPECT_NEAR(denied.empty, plain.empty * (1 - plain.occupied), 1e-6);
+  EXPECT_EQ(denied.occupied, plain.occupied);
+  EXPECT_EQ(denied.confidence, plain.confidence);
+}
+
+TEST(LocalMap, RaysThatStopWhereOthersHaveSweptLeaveNothingOut) {
+  // A dense fan of rays, and the same rays in a grid each: every cell that one of them makes free is free.
+  FlogOptions options = paper_band();
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> side(-1.5, 1.5), ahead(2, 5), up(0.1, 1.9);
+  const Eigen::Vector3d head(0.013, 0.021, 0.35);
+  std::vector<MapPoint> points;
+  for (int i = 0; i < 3000; ++i) points.push_back({{ahead(random), side(random), up(random)}, 0.03, 1});
+  const FlogGrid together = grid_of(options, head, points);
+  int crossed = 0, left_out = 0;
+  for (size_t i = 0; i < points.size(); i += 20) {
+    const FlogGrid alone = grid_of(options, head, {points[i]});
+    for (int row = -40; row < 40; ++row) {
+      for (int col = 0; col < 120; ++col) {
+        for (int layer = 0; layer < alone.plane_count(); ++layer) {
+          const FlogCell one = alone.cell(col, row, layer), all = together.cell(col, row, layer);
+          if (one.confidence == 0) continue;
+          ++crossed;
+          EXPECT_GE(all.occupied, one.occupied);
+          left_out += all.empty < 0.8F * one.empty;  // nearer points weigh a little more
+        }
+      }
+    }
+  }
+  EXPECT_GT(crossed, 10000);
+  EXPECT_LT(left_out, 0.005 * crossed);
 }
 
 TEST(MapPointOf, SigmaIsThatOfTheHorizontalDistance) {
