@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kWidth = 1600;
 constexpr double kLeft = 74, kRight = 96, kTop = 22, kBottom = 84;
+constexpr double kLegendLine = 28;  // what a second line of the legend needs
 constexpr double kMaxHeight = 1300;
 
 /// Value below which a fraction of the values lies; reorders them.
@@ -161,7 +162,8 @@ std::vector<LegendItem> legend_of(const TopView& view) {
 
 cv::Mat draw_top_view(const TopView& view) {
   const PlanView plan(bounds_of(view), {kLeft, kTop}, kWidth - kLeft - kRight, kMaxHeight);
-  Canvas canvas(kWidth, cvRound(kTop + plan.panel().height + kBottom), palette::kPaper);
+  const double more = view.links.empty() && view.without_links.empty() ? 0 : kLegendLine;
+  Canvas canvas(kWidth, cvRound(kTop + plan.panel().height + kBottom + more), palette::kPaper);
   plan.draw_grid(canvas, palette::kGrid);
   draw_outline(canvas, plan, view.outline, false);
   if (!view.cloud.empty()) {

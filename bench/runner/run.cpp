@@ -5,12 +5,9 @@
 #include <atomic>
 #include <chrono>
 #include <limits>
-#include <memory>
 #include <mutex>
 #include <opencv2/imgcodecs.hpp>
-#include <stdexcept>
 #include <thread>
-#include <type_traits>
 
 #include "bench/metrics/trajectory_file.h"
 #include "bench/report/report.h"
@@ -91,18 +88,6 @@ void write_motion(const OutputFolder& out, const SimulatedSource& source, const 
   if (!judged.without_links.empty()) write_tum(out.file("without_links.tum"), judged.without_links);
 }
 
-/// The core as it is, or with stages replaced by exact answers.
-template <class Core>
-std::unique_ptr<Core> make_core(const slam::StereoRig& rig, const slam::SlamOptions& options,
-                                const slam::Oracle* oracle) {
-  if constexpr (std::is_constructible_v<Core, slam::StereoRig, slam::SlamOptions, const slam::Oracle*>) {
-    return std::make_unique<Core>(rig, options, oracle);
-  } else {
-    if (oracle != nullptr) throw std::logic_error("this core takes no oracle");
-    return std::make_unique<Core>(rig, options);
-  }
-}
-
 }  // namespace
 
 std::string name_of(const OracleStages& stages) {
@@ -131,8 +116,8 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   const sim::TruthWorld still = exact_scene(world);
   const TruthOracle oracle(job.oracles, still, source.rig(),
                            [&source](int64_t frame) { return source.truth(frame).T_world_seen; });
-  const auto core = make_core<slam::Pipeline>(source.rig(), options, job.oracles.empty() ? nullptr : &oracle);
-  RunJudge judge(scene, source, *core);
+  slam::Pipeline core(source.rig(), options, job.oracles.empty() ? nullptr : &oracle);
+  RunJudge judge(scene, source, core);
   FigureRecorder figures(source.rig(), *source.size());
   std::vector<FrameNotes> notes;
   const auto observe = [&](const slam::StereoFrame& frame, const slam::FrameResult& result) {
@@ -146,12 +131,12 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
                      .position_error_m = kUnknown,
                      .memory_mb = memory_mb(),
                      .faults = truth.faults});
-    figures.observe(frame, result, *core);
+    figures.observe(frame, result, core);
   };
   RunOutcome outcome{scenario.name, scenario.seed, job.folder, 0, {}, {}, job.oracles};
   const std::string name = fmt::format("{}-{}", outcome.title(), scenario.seed);
   const CoreRun core_run =
-      run_core(source, *core, name, std::nullopt, observe, control, [&source] { source.abandon(); });
+      run_core(source, core, name, std::nullopt, observe, control, [&source] { source.abandon(); });
 
   // compare with the truth
   const RunJudgement judged = judge.judge(core_run.frames);
@@ -169,7 +154,7 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   slam::write_file_atomically(out.file("scenario.yaml"),
                               [&](std::ostream& text) { text << sim::to_yaml(scenario); });
   write_motion(out, source, judged);
-  write_core_files(out, *core);
+  write_core_files(out, core);
   write_truth(out, judge.exact_map(), scene.standing());
   write_frames_csv(out.file("frames.csv"), core_run.frames, notes);
   write_metrics_json(out.file("metrics.json"), outcome.metrics);
