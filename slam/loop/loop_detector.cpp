@@ -87,28 +87,23 @@ void LoopDetector::recognise(const RelativePose& relative_pose, LoopAnswer& answ
   }
 }
 
-/// Views that are not simply what the tracker still sees; they come first in views_.
-int LoopDetector::old_enough() const {
-  const auto young = std::partition_point(views_.begin(), views_.end(), [this](const StoredView& view) {
-    return view.index <= current_.view.index - options_.min_age_frames;
-  });
-  return static_cast<int>(young - views_.begin());
-}
-
 /// The stored views worth a closer look, best first: those that look alike, and those that should be in sight
 /// where the pose is known well.
 void LoopDetector::choose_candidates(const RelativePose& relative_pose) {
   candidates_.clear();
-  const int old = old_enough();
-  index_.query(current_.view.keypoints, old, old, alike_);
-  std::vector<double> alike(static_cast<size_t>(old), 0);
+  const auto views = static_cast<int>(views_.size());
+  index_.query(current_.view.keypoints, views, views, alike_);
+  std::vector<double> alike(views_.size(), 0);
   const double most = alike_.empty() ? 1 : alike_.front().score;
   for (const PlaceCandidate& candidate : alike_)
     alike[static_cast<size_t>(candidate.view)] = candidate.score / most;
 
-  for (int view = 0; view < old; ++view) {
+  for (int view = 0; view < views; ++view) {
     const StoredView& stored = views_[static_cast<size_t>(view)];
     const auto prediction = relative_pose(stored.index, current_.view.index);
+    // What the tracker has just seen is no news, unless it has lost its way since.
+    const bool young = stored.index > current_.view.index - options_.min_age_frames;
+    if (prediction && young) continue;
     double score = alike[static_cast<size_t>(view)];
     if (prediction && verifier_.precise_enough(stored, *prediction)) {
       const double overlap = predicted_overlap(stored, prediction->T_from_to);

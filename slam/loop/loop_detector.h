@@ -67,7 +67,6 @@ class LoopDetector {
   };
 
   void recognise(const RelativePose& relative_pose, LoopAnswer& answer, bool& covered);
-  int old_enough() const;
   void choose_candidates(const RelativePose& relative_pose);
   void keep_the_best(const RelativePose& relative_pose);
   double predicted_overlap(const StoredView& stored, const Pose& T_from_to) const;

@@ -1,5 +1,7 @@
 #include "slam/pipeline/front_end.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "slam/types/counter_random.h"
@@ -44,6 +46,7 @@ const RegistrationResult& FrontEnd::follow(const StereoFrame& frame, const Pose&
     align(T_kf_predicted);
     return registered_;
   }
+  const int expected = expected_in_view(T_kf_predicted);
   tracker_.track(left_, right_, T_kf_previous, T_kf_predicted);
   align(T_kf_predicted);
 
@@ -61,7 +64,32 @@ const RegistrationResult& FrontEnd::follow(const StereoFrame& frame, const Pose&
     align(registered_.T_from_to);
   }
   rotation_.remember(left_);
+  distrust_few(expected);
   return registered_;
+}
+
+/// Features of the last key frame that the plan puts into both images.
+int FrontEnd::expected_in_view(const Pose& T_kf_predicted) const {
+  const Pose T_left_kf = T_kf_predicted.inverse();
+  int expected = 0;
+  for (const Feature& feature : tracker_.features()) {
+    const Eigen::Vector3d p_left = T_left_kf * feature.p_kf;
+    if (p_left.z() <= 0) continue;
+    const Eigen::Vector3d uvu = rig_.project(p_left);
+    const bool inside = uvu.z() >= kBorder_px && uvu.x() < rig_.width_px - kBorder_px &&
+                        uvu.y() >= kBorder_px && uvu.y() < rig_.height_px - kBorder_px;
+    if (inside) ++expected;
+  }
+  return expected;
+}
+
+/// Walls and floors repeat themselves: where most features have gone at once, those that seem to be left may
+/// be others that look the same.
+void FrontEnd::distrust_few(int expected) {
+  if (!registered_.usable || registered_.inliers >= options_.tracking.min_kept_ratio * expected) return;
+  registered_.usable = false;
+  registered_.message = fmt::format("{} of {} features that should be in view agree on one motion",
+                                    registered_.inliers, expected);
 }
 
 void FrontEnd::register_points(const StereoFrame& frame, const Pose& T_kf_predicted) {

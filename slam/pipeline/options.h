@@ -21,9 +21,9 @@ namespace groundloop::slam {
 /// between how often pose and map are updated and the work that this takes.
 struct KeyFrameOptions {
   double max_translation_ratio =
-      0.1;                         ///< motion since the last key frame, relative to the median depth there
-  double max_rotation_deg = 8;     ///< motion since the last key frame
-  double min_tracked_ratio = 0.75; ///< agreeing features, relative to those of the last key frame
+      0.1;                          ///< motion since the last key frame, relative to the median depth there
+  double max_rotation_deg = 8;      ///< motion since the last key frame
+  double min_tracked_ratio = 0.75;  ///< agreeing features, relative to those of the last key frame
   int max_interval_frames = 30;
   int looks_kept = 8;  ///< key frames of one place whose points stay in the map; the oldest goes
 
@@ -41,7 +41,7 @@ struct KeyFrameOptions {
 struct BackgroundOptions {
   bool threads = true;            ///< false: done at once, with the same results at the same frames
   int adjustment_lag_frames = 1;  ///< after a key frame, until its adjustment enters
-  int map_lag_frames = 6;         ///< after a key frame, until what was recognised in it enters
+  int map_lag_frames = 5;         ///< after a key frame, until what was recognised in it enters
 
   template <class Archive>
   void visit(Archive& a) {

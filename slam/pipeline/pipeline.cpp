@@ -60,6 +60,7 @@ struct Pipeline::Impl {
   std::vector<Landmark> landmarks() const;
   void finish();
   void update_path();
+  void hang_held_frames_on(int key_frame, const Pose& T_kf_start);
   void note_features(FrameResult& result) const;
   void record(const StereoFrame& frame, FrameResult& result);
   Pose T_map_odom() const { return T_map_odom_by_tie.back(); }
@@ -76,6 +77,8 @@ struct Pipeline::Impl {
   bool started = false;
   int segment = 0;
   int frames_lost = 0;
+  size_t steps_held = 0;  ///< newest steps that only the plan gave a pose
+  int segment_key_frames = 0;
   Pose T_odom_kf = Pose::Identity();
   Pose T_kf_left = Pose::Identity();        ///< last frame in the last key frame
   Pose T_previous_left = Pose::Identity();  ///< last motion, for constant velocity
@@ -233,6 +236,7 @@ void Pipeline::Impl::start_segment(const StereoFrame& frame, StageClock& clock, 
                                  options.registration.min_inliers);
     return;
   }
+  hang_held_frames_on(static_cast<int>(stops.size()), T_kf_left);
   T_odom_kf = stops.empty() ? rig.T_body_left * T_kf_left : T_odom_kf * T_kf_left;
   T_kf_left.setIdentity();
   if (!first) ++segment;
@@ -254,6 +258,7 @@ void Pipeline::Impl::make_key_frame(const StereoFrame& frame, StageClock& clock,
 void Pipeline::Impl::stop_here(const StereoFrame& frame, bool starts_segment, const Matrix6d& covariance,
                                FrameResult& result) {
   result.is_key_frame = true;
+  segment_key_frames = starts_segment ? 1 : segment_key_frames + 1;
   note_features(result);
   kf_frame = frame.index;
   const auto number = static_cast<int>(stops.size());
@@ -390,7 +395,11 @@ void Pipeline::Impl::update_path() {
 
 bool Pipeline::Impl::wants_key_frame(const FrameResult& result) const {
   const KeyFrameOptions& when = options.key_frame;
-  return T_kf_left.translation().norm() > when.max_translation_ratio * front.key_frame_depth_m() ||
+  // A place that nothing predicted is believed when two key frames find it: the second comes soon.
+  constexpr int64_t kConfirmAfter = 2;
+  const bool confirms = segment > 0 && segment_key_frames == 1 && result.index - kf_frame >= kConfirmAfter;
+  return confirms ||
+         T_kf_left.translation().norm() > when.max_translation_ratio * front.key_frame_depth_m() ||
          rotation_angle_rad(T_kf_left.linear()) > when.max_rotation_deg * std::numbers::pi / 180 ||
          result.inliers < when.min_tracked_ratio * static_cast<double>(front.key_frame_features()) ||
          result.index - kf_frame >= when.max_interval_frames;
@@ -419,6 +428,16 @@ void Pipeline::Impl::note_features(FrameResult& result) const {
   }
 }
 
+/// Frames that only the plan gave a pose belong to what follows them: what broke the path, broke it before.
+/// @param T_kf_start  new key frame in the old one that the frames hang on
+void Pipeline::Impl::hang_held_frames_on(int key_frame, const Pose& T_kf_start) {
+  for (size_t i = steps.size() - steps_held; i < steps.size(); ++i) {
+    steps[i].T_kf_left = T_kf_start.inverse() * steps[i].T_kf_left;
+    steps[i].key_frame = key_frame;
+  }
+  steps_held = 0;
+}
+
 void Pipeline::Impl::record(const StereoFrame& frame, FrameResult& result) {
   result.segment = segment;
   const auto key_frame = static_cast<int>(stops.size()) - 1;
@@ -426,6 +445,8 @@ void Pipeline::Impl::record(const StereoFrame& frame, FrameResult& result) {
   result.T_map_left = T_map_odom() * T_odom_left;
   result.state_hash = state_hash(result);
   steps.push_back({frame.stamp_ns, key_frame, T_kf_left});
+  const bool held = result.status == TrackingStatus::kLost && !result.is_key_frame;
+  steps_held = held ? steps_held + 1 : 0;
 }
 
 void Pipeline::Impl::check(const StereoFrame& frame) const {

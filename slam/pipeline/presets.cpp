@@ -8,6 +8,7 @@ SlamOptions paper() {
   SlamOptions options;
   options.tracking.max_features = 400;
   options.tracking.hold_lost_frames = 0;
+  options.tracking.min_kept_ratio = 0;
   options.klt.max_sigma_px = 0.3;
   options.registration.cost = RegistrationCost::kScalarQuadratic;
   options.stereo.epipolar_gate_px = 1;

@@ -19,8 +19,11 @@ struct TrackingOptions {
   int start_level = 1;       ///< coarsest pyramid level searched first; all levels are tried when it fails
   int hold_lost_frames = 3;  ///< frames without pose that are waited for before a new segment is started
 
+  double min_kept_ratio = 0.3;  ///< agreeing features, of those that should be in view; fewer: lost
+
   template <class Archive>
   void visit(Archive& a) {
+    a("min_kept_ratio", min_kept_ratio, {.min = 0, .max = 1});
     a("max_features", max_features, {.min = 20, .max = 5000});
     a("start_level", start_level, {.min = 0, .max = 5});
     a("hold_lost_frames", hold_lost_frames, {.min = 0, .max = 1000});
