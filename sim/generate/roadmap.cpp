@@ -11,11 +11,12 @@
 namespace groundloop::sim {
 namespace {
 
-constexpr double kPitch_m = 0.5;  ///< between points
+constexpr double kDensest_m = 0.25, kSparsest_m = 0.5;  ///< between points
+constexpr double kWantedPoints = 600;
 constexpr double kShortest_m = 0.7, kLongest_m = 3.2;
 constexpr size_t kWaysFromPoint = 14;
 constexpr double kLargestRadius_m = 3.0, kSharpest_rad = 2.3, kFlattest_rad = 0.03;
-constexpr double kTangentShare = 0.45;  ///< of a way that an arc at one of its ends may take
+constexpr double kTangentShare = 0.48;  ///< of a way that an arc at one of its ends may take
 constexpr double kComfort_m = 0.4;      ///< clearance beyond the necessary that is still worth something
 constexpr double kTurnCost_m = 0.3, kTurnCost_m_per_rad = 0.3;
 enum Stream : uint64_t { kScatter = 11, kJoin = 12 };
@@ -73,13 +74,14 @@ Roadmap::Roadmap(const FreeSpace& space, const PlanRecipe& recipe, uint64_t seed
 /// One point in every square that has room for it.
 void Roadmap::scatter_points(const FreeSpace& space, uint64_t seed) {
   const slam::GridGeometry& grid = space.grid();
-  const int nx = static_cast<int>(grid.cols * grid.cell_m / kPitch_m) + 1;
-  const int ny = static_cast<int>(grid.rows * grid.cell_m / kPitch_m) + 1;
+  const double pitch_m = std::clamp(std::sqrt(space.area_m2() / kWantedPoints), kDensest_m, kSparsest_m);
+  const int nx = static_cast<int>(grid.cols * grid.cell_m / pitch_m) + 1;
+  const int ny = static_cast<int>(grid.rows * grid.cell_m / pitch_m) + 1;
   for (int i = 0; i < nx * ny; ++i) {
     for (int attempt = 0; attempt < 4; ++attempt) {
       const auto draw = static_cast<uint64_t>(i) * 8 + static_cast<uint64_t>(attempt) * 2;
-      const double x = grid.x_min_m + (i % nx + unit(random_bits(seed, kScatter, draw))) * kPitch_m;
-      const double y = grid.y_min_m + (i / nx + unit(random_bits(seed, kScatter, draw + 1))) * kPitch_m;
+      const double x = grid.x_min_m + (i % nx + unit(random_bits(seed, kScatter, draw))) * pitch_m;
+      const double y = grid.y_min_m + (i / nx + unit(random_bits(seed, kScatter, draw + 1))) * pitch_m;
       if (!space.holds(x, y)) continue;
       points.emplace_back(x, y);
       break;

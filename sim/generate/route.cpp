@@ -15,8 +15,8 @@
 namespace groundloop::sim {
 namespace {
 
-constexpr int kAttempts = 40;
-constexpr double kCloseEnough = 0.1;  ///< of the wanted length, for laps
+constexpr int kAttempts = 60, kMostAttempts = 400;  ///< to find a good one; to find any
+constexpr double kGoodEnough = 0.25;  ///< misfit of a lap
 constexpr double kLookEvery_m = 0.5, kLookEvery_rad = 15 * std::numbers::pi / 180;
 constexpr double kAgain = 0.7;  ///< what a place costs more each time it is visited again
 constexpr double kLegLength_m = 5;
@@ -40,6 +40,8 @@ class Tours {
   /// Looks round along the tour; what shows too little is not driven again.
   bool shows_enough(const Tour& tour);
   const Turn& turn(int from, int to) const { return *find_turn(from, to); }
+  /// How far a tour is from a round lap of the wanted length, 0 to infinity; 0 for a way that is not closed.
+  double misfit(const Tour& tour) const;
 
  private:
   Way& way(int index) const { return map_.ways[static_cast<size_t>(index)]; }
@@ -162,6 +164,18 @@ Tour Tours::draw_open(Dice& dice) {
   return tour;
 }
 
+/// A circle has a mean distance from its middle of its length / 2 pi; a lap that winds or turns back, less.
+double Tours::misfit(const Tour& tour) const {
+  if (!tour.closed) return 0;
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  const auto n = static_cast<double>(tour.ways.size());
+  for (const int w : tour.ways) middle += map_.points[static_cast<size_t>(way(w).to)] / n;
+  double mean_m = 0;
+  for (const int w : tour.ways) mean_m += (map_.points[static_cast<size_t>(way(w).to)] - middle).norm() / n;
+  const double roundness = std::min(1.0, mean_m * 2 * std::numbers::pi / tour.length_m);
+  return std::abs(tour.length_m / lap_m_ - 1) + (1 - roundness);
+}
+
 Tour Tours::draw(Dice dice) {
   visits_.assign(map_.points.size(), 0);
   return recipe_.laps > 0 ? draw_lap(dice) : draw_open(dice);
@@ -274,13 +288,15 @@ Route make_route(const Scenario& scenario, const TruthWorld& truth, const Textur
   Tours tours(map, sight, recipe, lap_m);
 
   Tour best;
-  double best_off = std::numeric_limits<double>::infinity();
-  for (int attempt = 0; attempt < kAttempts && !map.ways.empty() && best_off > kCloseEnough; ++attempt) {
+  double best_misfit = std::numeric_limits<double>::infinity();
+  const auto attempts = [&] { return best.ways.empty() ? kMostAttempts : kAttempts; };
+  for (int attempt = 0; attempt < attempts() && !map.ways.empty() && best_misfit > kGoodEnough; ++attempt) {
     const Tour tour = tours.draw(Dice(seed, 500 + static_cast<uint64_t>(attempt)));
-    const double off = recipe.laps > 0 ? std::abs(tour.length_m / lap_m - 1) : 0;
-    if (tour.ways.empty() || off >= best_off || !tours.shows_enough(tour)) continue;
+    if (tour.ways.empty()) continue;
+    const double misfit = tours.misfit(tour);
+    if (misfit >= best_misfit || !tours.shows_enough(tour)) continue;
     best = tour;
-    best_off = off;
+    best_misfit = misfit;
   }
   if (best.ways.empty()) {
     throw InputError(Problem{scenario.file, 0, "plan.generate",

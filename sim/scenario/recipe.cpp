@@ -13,7 +13,7 @@ struct Smallest {
 Smallest smallest(WorldStyle style) {
   switch (style) {
     case WorldStyle::kCorridor:
-      return {8, 2.2};
+      return {8, 2.4};
     case WorldStyle::kDoorway:
       return {8, 4};
     default:

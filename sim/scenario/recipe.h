@@ -40,9 +40,9 @@ struct PlanRecipe {
   std::optional<uint64_t> seed;  ///< none: the scenario's
   double length_m = 20;          ///< of the whole way
   int laps = 0;                  ///< times round the same loop; 0: not closed
-  double min_radius_m = 0.6;     ///< of arcs
+  double min_radius_m = 0.5;     ///< of arcs
   double clearance_m = 0.12;     ///< kept from everything
-  double min_texture = 0.25;     ///< part of the image that must show texture, all along
+  double min_texture = 0.15;     ///< part of the image that must show texture, all along
 
   template <class Archive>
   void visit(Archive& a) {

@@ -14,7 +14,7 @@ constexpr double kSmallestRoom_m = 3.5;
 std::vector<double> drawn_size(WorldStyle style, Dice& dice) {
   switch (style) {
     case WorldStyle::kCorridor:
-      return {dice.uniform(18, 32), dice.uniform(2.3, 3.0)};
+      return {dice.uniform(18, 32), dice.uniform(2.5, 3.2)};
     case WorldStyle::kDoorway:
       return {dice.uniform(10, 16), dice.uniform(5, 8)};
     default:

@@ -10,7 +10,7 @@ namespace groundloop::sim {
 namespace {
 
 constexpr double kDeepest_m = 0.97;      ///< what furniture reaches into a room
-constexpr double kIsland_m = 1.98;       ///< depth of two pieces back to back
+constexpr double kBackToBack_m = 1.98;   ///< depth of two pieces
 constexpr double kNarrowest_m = 1.5;     ///< always left between the two sides of a room
 
 using Maker = Piece (*)(const Palette&, Dice);
@@ -22,6 +22,7 @@ struct Habits {
   double gap_min_m, gap_max_m;          ///< between two pieces along a wall
   double picture_gap_min_m, picture_gap_max_m;
   double aisle_m;
+  double island_m;  ///< depth: one piece, or two back to back
   double island_chance;
 };
 
@@ -31,16 +32,16 @@ Habits habits_of(WorldStyle style) {
       return {{make_desk, make_bench, make_shelf, make_cartons, make_cartons, make_rack, make_cabinet, make_drawers,
                make_plant},
               {make_desk, make_desk, make_bench, make_cartons, make_shelf, make_rack, make_drawers},
-              0.02, 0.25, 0.1, 0.5, 1.2, 1};
+              0.02, 0.25, 0.1, 0.5, 1.15, kDeepest_m, 1};
     case WorldStyle::kLowTexture:
       return {{make_cabinet, make_drawers, make_couch, make_desk, make_plant},
               {make_desk, make_desk, make_drawers, make_couch},
-              0.4, 1.6, 1.0, 2.2, 1.5, 0.8};
+              0.4, 1.4, 0.5, 1.3, 1.5, kBackToBack_m, 0.8};
     default:
       return {{make_desk, make_desk, make_desk, make_shelf, make_shelf, make_cabinet, make_cabinet, make_drawers,
                make_bench, make_rack, make_plant, make_cartons, make_couch},
               {make_desk, make_desk, make_desk, make_desk, make_shelf, make_poster_board, make_drawers},
-              0.05, 0.6, 0.15, 0.8, 1.35, 0.9};
+              0.05, 0.6, 0.15, 0.8, 1.35, kBackToBack_m, 0.9};
   }
 }
 
@@ -164,7 +165,7 @@ void Furnisher::fill_corridor() {
 double Furnisher::put_island(double x_m, double y_m, double yaw_deg, double length_m, double depth_m, Dice& dice) {
   const double yaw_rad = yaw_deg * std::numbers::pi / 180;
   const Maker maker = dice.pick(habits_.in_islands);
-  const bool both_sides = depth_m >= kIsland_m;
+  const bool both_sides = depth_m >= kBackToBack_m;
   double used = 0;
   for (int i = dice.integer(1, 3); i > 0; --i) {
     const Maker rear_maker = dice.chance(0.7) ? maker : dice.pick(habits_.in_islands);
@@ -193,8 +194,8 @@ void Furnisher::fill_islands(const Rect& room, Dice dice) {
   const bool along_x = dice.chance(middle.width_m() >= middle.height_m() ? 0.75 : 0.25);
   const double along = along_x ? middle.width_m() : middle.height_m();
   const double across = along_x ? middle.height_m() : middle.width_m();
-  const int rows = std::max(1, static_cast<int>((across + habits_.aisle_m) / (kIsland_m + habits_.aisle_m)));
-  const double pitch = across / rows, depth = std::min(kIsland_m, rows == 1 ? across : pitch - habits_.aisle_m);
+  const int rows = std::max(1, static_cast<int>((across + habits_.aisle_m) / (habits_.island_m + habits_.aisle_m)));
+  const double pitch = across / rows, depth = std::min(habits_.island_m, rows == 1 ? across : pitch - habits_.aisle_m);
   for (int row = 0; row < rows; ++row) {
     // Spread so that the outermost rows keep the aisle, too.
     const double v = rows == 1 ? across / 2 : depth / 2 + row * (across - depth) / (rows - 1);

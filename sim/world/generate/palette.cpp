@@ -45,7 +45,7 @@ Palette::Palette(SceneWriter& scene, Dice& dice, bool plain_) : plain(plain_) {
   metal = plain ? colour(scene, tinted(dice, 0.45, 0.7, 0.1))
                 : boxy(scene, dice, dice.chance(0.5) ? "brushed_metal" : "painted_metal", 0.15);
   back = plain ? wood : flat(scene, dice, dice.chance(0.5) ? "dark_wood" : "grey_laminate", 2, 1);
-  fabric = plain ? colour(scene, tinted(dice, 0.3, 0.55, 0.4)) : flat(scene, dice, "fabric", 1, 1);
+  fabric = plain ? colour(scene, tinted(dice, 0.3, 0.55, 0.4)) : boxy(scene, dice, "fabric", 0.2);
   frame = plain ? colour(scene, tinted(dice, 0.4, 0.7, 0.1)) : boxy(scene, dice, "painted_metal", 0.2);
   black = colour(scene, {0.12, 0.12, 0.13});
   chrome = colour(scene, {0.62, 0.64, 0.66});

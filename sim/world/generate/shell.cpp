@@ -16,6 +16,7 @@ constexpr double kSkirting_m = 0.045;    ///< half height
 FloorKind floor_kind(const WorldRecipe& recipe, Dice& dice) {
   const int drawn = dice.integer(0, 3);
   if (recipe.floor != FloorKind::kAny) return recipe.floor;
+  if (recipe.style == WorldStyle::kLowTexture && drawn == 3) return FloorKind::kWood;  // something must be seen
   constexpr FloorKind kKinds[] = {FloorKind::kTiles, FloorKind::kCarpet, FloorKind::kWood, FloorKind::kConcrete};
   return kKinds[drawn];
 }
@@ -32,7 +33,7 @@ std::string floor_material(SceneWriter& scene, const WorldRecipe& recipe, Dice& 
       case FloorKind::kWood:
         return {"light_wood", 0.5, 0.7, 0.95, 0.2};
       case FloorKind::kConcrete:
-        return {"plain_plaster", 0.3, 0.5, 0.7, 0.15};
+        return {"painted_metal", 0.7, 0.6, 0.8, 0.15};
       default:
         return {"floor_tiles", 0.55, 0.8, 1, 0.3};
     }

@@ -13,7 +13,7 @@ namespace groundloop::sim {
 namespace {
 
 constexpr uint64_t kSeeds = 200, kSeedsATest = 10;
-constexpr double kLength_m = 18, kClearance_m = 0.12, kMinRadius_m = 0.6;
+constexpr double kLength_m = 18, kClearance_m = 0.12, kMinRadius_m = 0.5;
 constexpr const char* kStyles[] = {"office", "clutter", "corridor", "doorway", "low_texture"};
 
 class AnySeed : public ::testing::TestWithParam<uint64_t> {
@@ -64,7 +64,9 @@ TEST_P(AnySeed, GivesAWorldAndAClearWay) {
       ASSERT_NEAR(length_m, kLength_m, 1e-9);
       continue;
     }
-    ASSERT_NEAR(length_m, kLength_m, 0.5 * kLength_m);
+    // Where a room has no loop so short, laps are longer.
+    ASSERT_GE(length_m, 0.5 * kLength_m);
+    ASSERT_LE(length_m, 3 * kLength_m);
     const PlannedPath path(scenario.robot.start, scenario.plan, {0.1, 0.3, 10, 3});
     const Pose2 start = path.at(0).T_world_body, end = path.at(path.duration_s()).T_world_body;
     ASSERT_NEAR(end.x_m, start.x_m, 1e-6);

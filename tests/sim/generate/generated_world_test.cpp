@@ -88,7 +88,7 @@ TEST(GeneratedWorld, WrongRecipesAreNamed) {
   EXPECT_THAT(messages("{generate: {size_m: [9], " + where + "}}", kPlan),
               ElementsAre(":3: world.generate.size_m: [9]: wanted [x, y] of at least [6, 5] for this style"));
   EXPECT_THAT(messages("{generate: {style: corridor, size_m: [20, 2], " + where + "}}", kPlan),
-              ElementsAre(":3: world.generate.size_m: [20, 2]: wanted [x, y] of at least [8, 2.2] for this style"));
+              ElementsAre(":3: world.generate.size_m: [20, 2]: wanted [x, y] of at least [8, 2.4] for this style"));
   EXPECT_THAT(messages("{generate: {style: castle, " + where + "}}", kPlan),
               ElementsAre(HasSubstr("world.generate.style: castle: wanted one of: office")));
   EXPECT_THAT(messages("{generate: {textures: /nowhere}}", kPlan),

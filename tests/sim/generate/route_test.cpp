@@ -18,9 +18,19 @@ using ::testing::HasSubstr;
 
 std::string lab() { return std::filesystem::absolute("models/worlds/lab.xml").string(); }
 
+/// One for all tests: pictures are read once.
+PictureContrast& pictures() {
+  static PictureContrast pictures;
+  return pictures;
+}
+
+Scenario made(const std::string& world, const std::string& plan) {
+  return realized(scenario_with(world, plan), pictures());
+}
+
 std::string message(const std::string& world, const std::string& plan) {
   try {
-    realized(scenario_with(world, plan));
+    made(world, plan);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -28,7 +38,7 @@ std::string message(const std::string& world, const std::string& plan) {
 }
 
 TEST(Route, LeadsThroughAHandMadeWorldToo) {
-  const Scenario scenario = realized(scenario_with(lab(), "{speed_mps: 0.3, generate: {seed: 2, length_m: 25, laps: 2}}"));
+  const Scenario scenario = made(lab(), "{speed_mps: 0.3, generate: {seed: 2, length_m: 25, laps: 2}}");
   EXPECT_FALSE(scenario.plan.generate.has_value());
   const World world = World::load(scenario, Looks::kNone);
   const Simulation simulation(world, load_head(scenario.head.model), scenario);  // checks the path
@@ -39,8 +49,8 @@ TEST(Route, LeadsThroughAHandMadeWorldToo) {
 }
 
 TEST(Route, SecondLapIsTheFirstAgain) {
-  const Scenario one = realized(scenario_with(lab(), "{speed_mps: 0.3, generate: {seed: 3, length_m: 12, laps: 1}}"));
-  const Scenario two = realized(scenario_with(lab(), "{speed_mps: 0.3, generate: {seed: 3, length_m: 24, laps: 2}}"));
+  const Scenario one = made(lab(), "{speed_mps: 0.3, generate: {seed: 3, length_m: 12, laps: 1}}");
+  const Scenario two = made(lab(), "{speed_mps: 0.3, generate: {seed: 3, length_m: 24, laps: 2}}");
   const auto& a = one.plan.segments;
   const auto& b = two.plan.segments;
   // the last straight of the first lap and the first of the second are one
@@ -60,21 +70,21 @@ TEST(Route, SecondLapIsTheFirstAgain) {
 
 TEST(Route, RepeatsAndDiffersWithTheSeed) {
   const auto yaml = [](int seed) {
-    return to_yaml(realized(scenario_with(lab(), fmt::format("{{speed_mps: 0.3, generate: {{seed: {}}}}}", seed))));
+    return to_yaml(made(lab(), fmt::format("{{speed_mps: 0.3, generate: {{seed: {}}}}}", seed)));
   };
   EXPECT_EQ(yaml(1), yaml(1));
   EXPECT_NE(yaml(1), yaml(2));
 }
 
 TEST(Route, SavedScenarioIsTheSameRunWithoutAGenerator) {
-  const Scenario made = realized(scenario_with("{generate: {seed: 6, style: clutter, textures: " + textures() + "}}",
-                                               "{speed_mps: 0.3, generate: {length_m: 10}}"));
-  const std::string text = to_yaml(made);
+  const Scenario drawn = made("{generate: {seed: 6, style: clutter, textures: " + textures() + "}}",
+                                               "{speed_mps: 0.3, generate: {length_m: 10}}");
+  const std::string text = to_yaml(drawn);
   const auto file = std::filesystem::temp_directory_path() / "saved.yaml";
   std::ofstream(file) << text;
   const Scenario again = realized(load_scenario(file.string()));
   EXPECT_EQ(to_yaml(again), text);
-  EXPECT_EQ(generated_text(again), generated_text(made));
+  EXPECT_EQ(generated_text(again), generated_text(drawn));
 }
 
 TEST(Route, WhatCannotBeIsSaid) {

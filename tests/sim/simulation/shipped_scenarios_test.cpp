@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "sim/generate/realize.h"
 #include "sim/head/head.h"
 #include "sim/simulation/simulation.h"
 #include "sim/world/world.h"
@@ -15,7 +16,7 @@ TEST(ShippedScenarios, AllLoadAndDriveClearOfEverything) {
     if (entry.path().extension() != ".yaml") continue;
     SCOPED_TRACE(entry.path().string());
     ++scenarios;
-    const Scenario scenario = load_scenario(entry.path().string());
+    const Scenario scenario = realized(load_scenario(entry.path().string()));
     EXPECT_EQ(scenario.name, entry.path().stem()) << "named as its file";
     const World world = World::load(scenario);
     const Simulation simulation(world, load_head(scenario.head.model), scenario);
