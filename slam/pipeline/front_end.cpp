@@ -211,16 +211,17 @@ void FrontEnd::measure_key_frame() {
   kf_median_depth_m_ = *middle;
 }
 
-const std::vector<Eigen::Vector3f>& FrontEnd::dense_points(const StereoFrame& frame) {
-  dense_points_.clear();
-  dense_.sample(options_.dense_map.step_px, dense_points_);
-  if (!replaced(OracleStage::kStereo)) return dense_points_;
-  std::erase_if(dense_points_, [&](Eigen::Vector3f& uvu) {
+const std::vector<DensePoint>& FrontEnd::dense_points(const StereoFrame& frame) {
+  const std::vector<DensePoint>& measured = dense_points_.measure(frame.left, frame.right, dense_);
+  if (!replaced(OracleStage::kStereo)) return measured;
+  exact_points_ = measured;
+  std::erase_if(exact_points_, [&](DensePoint& point) {
+    Eigen::Vector3f& uvu = point.uvu_px;
     const auto disparity = oracle_->disparity_px(frame.index, uvu.head<2>().cast<double>());
     if (disparity) uvu.z() = uvu.x() - static_cast<float>(*disparity);
     return !disparity;
   });
-  return dense_points_;
+  return exact_points_;
 }
 
 }  // namespace groundloop::slam

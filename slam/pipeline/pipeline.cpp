@@ -346,8 +346,9 @@ Look Pipeline::Impl::look(const StereoFrame& frame) {
          frame.left.at<uint8_t>(cvRound(feature.left.uv_px.y()), cvRound(feature.left.uv_px.x()))});
   }
   if (options.dense_map.step_px > 0) {
-    for (const Eigen::Vector3f& uvu : front.dense_points(frame)) {
-      look.observations.push_back({uvu, static_cast<float>(options.dense_map.weight)});
+    for (const DensePoint& point : front.dense_points(frame)) {
+      look.observations.push_back(
+          {point.uvu_px, static_cast<float>(options.dense_map.weight), point.sigma_px});
     }
   }
   return look;
