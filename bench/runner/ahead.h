@@ -8,10 +8,13 @@
 #include <optional>
 #include <thread>
 
+#include "bench/runner/priority.h"
+
 namespace groundloop::bench {
 
 /// Makes things in a thread of its own, some ahead of who takes them: physics, rendering and decoding go on
-/// while the core works. The order, and every byte, stays the maker's; its errors reach the caller of next().
+/// while the core works, and stand back behind it. The order, and every byte, stays the maker's; its errors
+/// reach the caller of next().
 template <class T>
 class Ahead {
  public:
@@ -51,6 +54,7 @@ class Ahead {
 
  private:
   void produce(std::function<std::optional<T>()> make) {
+    stand_back();
     while (true) {
       std::optional<T> thing;
       std::exception_ptr error;
