@@ -58,8 +58,16 @@ int64_t step_ns_of(const mjModel& model, const Scenario& scenario) {
 
 }  // namespace
 
-struct Simulation::Impl {
-  Impl(const World& world_, const HeadModel& head, const Scenario& scenario, PoseFeedback core_pose_);
+struct Simulation::Wheeled : HeadCarrier {
+  Wheeled(const World& world_, const HeadModel& head, const Scenario& scenario, PoseFeedback core_pose_);
+
+  std::optional<Exposure> advance() override;
+  int64_t exposure_count() const override { return exposures; }
+  double planned_length_m() const override { return path.length_m(); }
+  slam::Pose planned_T_world_body(double time_s) const override {
+    return to_pose(path.at(time_s).T_world_body);
+  }
+  double planned_duration_s() const override { return path.duration_s(); }
 
   void check_path_after_moves(const Scenario& scenario);
   void settle();
@@ -105,8 +113,8 @@ struct Simulation::Impl {
   slam::Pose T_world_expected_left;   ///< as planned, or as odometry says, at the last exposure
 };
 
-Simulation::Impl::Impl(const World& world_, const HeadModel& head, const Scenario& scenario,
-                       PoseFeedback core_pose_)
+Simulation::Wheeled::Wheeled(const World& world_, const HeadModel& head, const Scenario& scenario,
+                             PoseFeedback core_pose_)
     : world(world_),
       motion(world, scenario),
       model(motion.model()),
@@ -149,12 +157,12 @@ Simulation::Impl::Impl(const World& world_, const HeadModel& head, const Scenari
 }
 
 /// How far the wheels have rolled.
-std::array<double, 2> Simulation::Impl::rolled_rad(const mjData& data) const {
+std::array<double, 2> Simulation::Wheeled::rolled_rad(const mjData& data) const {
   return {data.qpos[drive.left_qpos], data.qpos[drive.right_qpos]};
 }
 
 /// The path must be clear of furniture wherever it stands, at any time: simple, and on the safe side.
-void Simulation::Impl::check_path_after_moves(const Scenario& scenario) {
+void Simulation::Wheeled::check_path_after_moves(const Scenario& scenario) {
   motion.place(path.duration_s());
   update_kinematics(model, *state);
   check_path(scenario, path, TruthWorld(world, *state));
@@ -163,7 +171,7 @@ void Simulation::Impl::check_path_after_moves(const Scenario& scenario) {
 }
 
 /// Lets the robot sink into its contacts before time starts.
-void Simulation::Impl::settle() {
+void Simulation::Wheeled::settle() {
   const slam::Pose before = body_pose(world, *state);
   focus.update(*state);
   while (state->time < kSettle_s) mj_step(&focus.model(), state.get());
@@ -177,14 +185,14 @@ void Simulation::Impl::settle() {
 }
 
 /// Where the steering believes the robot is, in the plan's world.
-Pose2 Simulation::Impl::steering_pose() const {
+Pose2 Simulation::Wheeled::steering_pose() const {
   if (feedback == Feedback::kOdometry) return composed(T_world_start, odometry.T_odom_body());
   if (feedback == Feedback::kSlam) return composed(T_plan_odom, odometry.T_odom_body());
   return composed(inverse(kidnapping.T_world_plan()), to_pose2(body_pose(world, *state)));
 }
 
 /// Lays the odometry where the core says that the robot was.
-void Simulation::Impl::take_slam_pose(int64_t of_exposure) {
+void Simulation::Wheeled::take_slam_pose(int64_t of_exposure) {
   if (of_exposure < 0) return;
   const std::optional<slam::Pose> T_map_left = core_pose(of_exposure);
   if (!T_map_left) return;
@@ -195,7 +203,7 @@ void Simulation::Impl::take_slam_pose(int64_t of_exposure) {
   T_plan_odom = composed(composed(*T_plan_map, T_map_body), inverse(T_odom_body));
 }
 
-void Simulation::Impl::step() {
+void Simulation::Wheeled::step() {
   const double step_s = model.opt.timestep;
   const double time_s = static_cast<double>(steps) * step_s;
   kidnapping.update(steps * step_ns, *state);
@@ -216,7 +224,7 @@ void Simulation::Impl::step() {
 }
 
 /// A copy of the state, moved on with its velocities to a time less than a step (or a trigger offset) away.
-std::shared_ptr<mjData> Simulation::Impl::state_at(int64_t stamp_ns) {
+std::shared_ptr<mjData> Simulation::Wheeled::state_at(int64_t stamp_ns) {
   if (motion.place(static_cast<double>(stamp_ns) * 1e-9)) focus.look_again();
   const std::shared_ptr<mjData> copy = pool.copy(*state);
   mj_integratePos(&model, copy->qpos, copy->qvel, static_cast<double>(stamp_ns - steps * step_ns) * 1e-9);
@@ -225,16 +233,16 @@ std::shared_ptr<mjData> Simulation::Impl::state_at(int64_t stamp_ns) {
   return copy;
 }
 
-slam::Pose Simulation::Impl::T_world_left(const mjData& data) const {
+slam::Pose Simulation::Wheeled::T_world_left(const mjData& data) const {
   return head_mount ? head_mount->T_world_left(data) : body_pose(world, data) * T_body_left;
 }
 
 /// Where the plan has the left camera on the robot, which knows how it has told its head to turn.
-slam::Pose Simulation::Impl::planned_T_body_left(double time_s) const {
+slam::Pose Simulation::Wheeled::planned_T_body_left(double time_s) const {
   return head_mount ? head_mount->T_body_left(path.at(time_s).head) : T_body_left;
 }
 
-Exposure Simulation::Impl::expose() {
+Exposure Simulation::Wheeled::expose() {
   Exposure exposure;
   exposure.index = next_exposure++;
   if (feedback == Feedback::kSlam) take_slam_pose(exposure.index - 1 - kFeedbackPairs);
@@ -261,7 +269,7 @@ Exposure Simulation::Impl::expose() {
 }
 
 /// What the robot knows: its odometry, its plan, and the motion that either makes it expect.
-void Simulation::Impl::tell_expected_motion(Exposure& exposure) {
+void Simulation::Wheeled::tell_expected_motion(Exposure& exposure) {
   // copies read the encoders at the exposure
   const double time_s = static_cast<double>(exposure.stamp_ns) * 1e-9;
   WheelAngles angles_now = angles;
@@ -281,21 +289,22 @@ void Simulation::Impl::tell_expected_motion(Exposure& exposure) {
   T_world_expected_left = T_world_now;
 }
 
+std::optional<Exposure> Simulation::Wheeled::advance() {
+  if (next_exposure >= exposures) return std::nullopt;
+  return expose();
+}
+
 Simulation::Simulation(const World& world, const HeadModel& head, const Scenario& scenario,
                        PoseFeedback core_pose)
-    : impl_(std::make_unique<Impl>(world, head, scenario, std::move(core_pose))) {}
+    : carrier_(std::make_unique<Wheeled>(world, head, scenario, std::move(core_pose))) {}
 Simulation::~Simulation() = default;
 
-std::optional<Exposure> Simulation::advance() {
-  if (impl_->next_exposure >= impl_->exposures) return std::nullopt;
-  return impl_->expose();
-}
-
-int64_t Simulation::exposures() const { return impl_->exposures; }
-double Simulation::planned_length_m() const { return impl_->path.length_m(); }
+std::optional<Exposure> Simulation::advance() { return carrier_->advance(); }
+int64_t Simulation::exposures() const { return carrier_->exposure_count(); }
+double Simulation::planned_length_m() const { return carrier_->planned_length_m(); }
 slam::Pose Simulation::planned_T_world_body(double time_s) const {
-  return to_pose(impl_->path.at(time_s).T_world_body);
+  return carrier_->planned_T_world_body(time_s);
 }
-double Simulation::planned_duration_s() const { return impl_->path.duration_s(); }
+double Simulation::planned_duration_s() const { return carrier_->planned_duration_s(); }
 
 }  // namespace groundloop::sim

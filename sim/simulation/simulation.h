@@ -38,7 +38,19 @@ struct Exposure {
 /// an exposure; waits until it is known. None when there is none: lost, or the pair did not arrive.
 using PoseFeedback = std::function<std::optional<slam::Pose>(int64_t exposure)>;
 
-/// Physics, controller and odometry: drives the plan and stops at every exposure.
+/// What carries the head from exposure to exposure: a robot on wheels, or an arm. Members as in Simulation.
+class HeadCarrier {
+ public:
+  virtual ~HeadCarrier() = default;
+  virtual std::optional<Exposure> advance() = 0;
+  virtual int64_t exposure_count() const = 0;
+  virtual double planned_length_m() const = 0;
+  virtual slam::Pose planned_T_world_body(double time_s) const = 0;
+  virtual double planned_duration_s() const = 0;
+};
+
+/// Physics, controller and odometry: drives the plan and stops at every exposure. What follows is said of a
+/// robot on wheels; an arm has a plan of its own kind (ArmSimulation).
 ///
 /// Time: exposure k is at k times the head's period exactly. Physics runs in the model's own steps whatever
 /// the head's rate, so the drive is the same for every head; an exposure between two steps continues the last
@@ -75,8 +87,8 @@ class Simulation {
   double planned_duration_s() const;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  struct Wheeled;
+  std::unique_ptr<HeadCarrier> carrier_;
 };
 
 }  // namespace groundloop::sim
