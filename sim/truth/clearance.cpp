@@ -1,14 +1,11 @@
 #include "sim/truth/clearance.h"
 
-#include <BulletCollision/CollisionShapes/btConvexInternalShape.h>
-#include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
-#include "sim/truth/bullet.h"
+#include "sim/truth/convex_overlap.h"
 
 namespace groundloop::sim {
 namespace {
@@ -18,33 +15,6 @@ using Eigen::Vector3d;
 
 /// Wheels stand on the floor; only what rises above this height is an obstacle.
 constexpr double kFloorClearance_m = 0.02;
-
-/// A Bullet shape that knows nothing but its support function, in the world frame.
-class SupportShape : public btConvexInternalShape {
- public:
-  explicit SupportShape(Support support) : support_(std::move(support)) {
-    m_shapeType = CUSTOM_CONVEX_SHAPE_TYPE;
-    setMargin(0);
-  }
-  btVector3 localGetSupportingVertexWithoutMargin(const btVector3& direction) const override {
-    return to_bullet(support_(from_bullet(direction)));
-  }
-  void batchedUnitVectorGetSupportingVertexWithoutMargin(const btVector3* directions, btVector3* points,
-                                                         int count) const override {
-    for (int i = 0; i < count; ++i) points[i] = localGetSupportingVertexWithoutMargin(directions[i]);
-  }
-  void calculateLocalInertia(btScalar, btVector3& inertia) const override { inertia.setZero(); }
-  const char* getName() const override { return "support"; }
-
- private:
-  Support support_;
-};
-
-Support moved(Support local, const slam::Pose& T_world_local) {
-  return [local = std::move(local), T_world_local](const Vector3d& direction) -> Vector3d {
-    return T_world_local * local(T_world_local.linear().transpose() * direction);
-  };
-}
 
 /// The projection of a body to the floor, enlarged by a disc and swept between two heights.
 Support swept(Support body, double margin_m, double z_min_m, double z_max_m) {
@@ -69,22 +39,6 @@ double radius_about(const Vector3d& centre, const Solid& solid, const slam::Pose
     radius_m = std::max(radius_m, (p - centre).head<2>().norm());
   }
   return radius_m;
-}
-
-AlignedBox3d extent_of(const Support& body) {
-  AlignedBox3d extent;
-  for (int axis = 0; axis < 3; ++axis) {
-    extent.extend(body(Vector3d::Unit(axis)));
-    extent.extend(body(-Vector3d::Unit(axis)));
-  }
-  return extent;
-}
-
-bool overlap(const Support& a, const Support& b, const Vector3d& guess) {
-  const SupportShape shape_a(a), shape_b(b);
-  btGjkEpaSolver2::sResults result;
-  const btTransform here = btTransform::getIdentity();
-  return !btGjkEpaSolver2::Distance(&shape_a, here, &shape_b, here, to_bullet(guess), result);
 }
 
 }  // namespace
