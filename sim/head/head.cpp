@@ -1,10 +1,17 @@
 #include "sim/head/head.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <filesystem>
 #include <numbers>
+#include <stdexcept>
 
 namespace groundloop::sim {
+namespace {
+
+constexpr int kLargestRender_px = 8192;
+
+}  // namespace
 
 HeadModel load_head(const std::string& file) {
   HeadModel head;
@@ -12,6 +19,38 @@ HeadModel load_head(const std::string& file) {
   read_config(load_yaml_file(file), file, head, problems);
   if (!problems.empty()) throw InputError(std::move(problems));
   return head;
+}
+
+void HeadModel::check(ConfigReader& reader) const {
+  if (!raw) return;
+  for (const char* key : {"focal_px", "cx_px", "cy_px", "noise"}) {
+    if (reader.has(key)) reader.problem(key, "nothing beside raw, which has lenses and a sensor of its own");
+  }
+  if (raw->sensor.mosaic != Mosaic::kNone && (width_px % 2 != 0 || height_px % 2 != 0)) {
+    reader.problem("raw", "an even width and height behind a colour mosaic");
+  }
+  try {
+    const RenderView view = render_view(raw->optics, read_pixels(raw->sensor, width_px, height_px));
+    if (view.size.width > kLargestRender_px || view.size.height > kLargestRender_px) {
+      reader.problem("raw", fmt::format("{} x {} rendered pixels", view.size.width, view.size.height),
+                     fmt::format("lenses and a supersampling that need at most {} x {}", kLargestRender_px,
+                                 kLargestRender_px));
+    }
+  } catch (const std::domain_error& error) {
+    reader.problem("raw", error.what(), "lenses that see one direction at every pixel");
+  }
+  if (raw->exposure.longest_s() > 1 / rate_hz) {
+    reader.problem("raw", fmt::format("{} s for one image", raw->exposure.longest_s()),
+                   fmt::format("exposure and read-out within one period, {:.6f} s", 1 / rate_hz));
+  }
+}
+
+slam::Pose HeadModel::T_left_right() const {
+  return sim::T_left_right(baseline_m, raw ? raw->right_pose : RightPose{});
+}
+
+std::vector<double> HeadModel::sub_frame_times_s() const {
+  return raw ? raw->exposure.sub_frame_times_s() : std::vector<double>{0};
 }
 
 slam::StereoRig HeadModel::rig() const {
@@ -27,9 +66,10 @@ slam::StereoRig HeadModel::rig() const {
   slam::StereoRig rig;
   rig.width_px = width_px;
   rig.height_px = height_px;
-  rig.fx_px = rig.fy_px = focal_px;
-  rig.cx_px = rig.cx_right_px = cx_px;
-  rig.cy_px = cy_px;
+  rig.fx_px = raw ? raw->optics.left.fx_px : focal_px;
+  rig.fy_px = raw ? raw->optics.left.fy_px : focal_px;
+  rig.cx_px = rig.cx_right_px = raw ? raw->optics.left.cx_px : cx_px;
+  rig.cy_px = raw ? raw->optics.left.cy_px : cy_px;
   rig.baseline_m = baseline_m;
   rig.T_body_left.linear() = R_body_mount * slam::StereoRig::level_camera(p_body).linear();
   rig.T_body_left.translation() = p_body;

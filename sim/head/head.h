@@ -2,8 +2,11 @@
 
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "sim/head/raw_head.h"
 #include "slam/types/config.h"
 #include "slam/types/stereo_rig.h"
 
@@ -29,7 +32,8 @@ struct HeadMount {
   }
 };
 
-/// First sensor model: shot noise (variance proportional to grey value) and read noise, 8-bit quantisation.
+/// The simple sensor of an ideal head: shot noise (variance proportional to grey value) and read noise, 8-bit
+/// quantisation.
 struct HeadNoise {
   double read_grey = 1.5;             ///< standard deviation in the dark [grey levels]
   double shot_grey_per_level = 0.01;  ///< variance added per grey level [grey^2 / grey]
@@ -41,7 +45,8 @@ struct HeadNoise {
   }
 };
 
-/// A stereo head, as models/heads/*.yaml describes it.
+/// A stereo head, as models/heads/*.yaml describes it. Either ideal: a rectified pair of pinhole cameras
+/// whose images are rendered as they are and get simple noise. Or raw (`raw`): lenses, sensors, shutter.
 struct HeadModel {
   std::string name;
   std::string summary;
@@ -54,6 +59,7 @@ struct HeadModel {
   double cy_px = 239.5;
   HeadMount mount;
   HeadNoise noise;
+  std::optional<RawHead> raw;  ///< in place of focal_px, cx_px, cy_px, noise
 
   template <class Archive>
   void visit(Archive& a) {
@@ -68,11 +74,18 @@ struct HeadModel {
     a("cy_px", cy_px, {.min = -1000, .max = 6000});
     a("mount", mount);
     a("noise", noise);
+    a("raw", raw);
   }
+  void check(ConfigReader& reader) const;
 
-  /// What the SLAM core is told about the head.
+  /// The ideal head; of a raw one, the rectified pair with its left lens' focal length, without distortion.
+  /// T_body_left is that of the camera itself in both.
   slam::StereoRig rig() const;
+  /// Pose of the right camera in the left one.
+  slam::Pose T_left_right() const;
   int64_t period_ns() const;
+  /// When the scene is rendered for one image, from its stamp; {0} for an ideal head.
+  std::vector<double> sub_frame_times_s() const;
 };
 
 /// @throws InputError
