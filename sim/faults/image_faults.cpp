@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <type_traits>
 
 #include "slam/types/counter_random.h"
 
@@ -23,29 +24,33 @@ double transmission(double distance_px, double radius_px, double opacity) {
   return 1 - opacity * inside * inside * (3 - 2 * inside);
 }
 
+template <class T>
 void darken_spot(cv::Point2d centre_px, double radius_px, double opacity, cv::Mat& image) {
+  constexpr double kRounding = std::is_integral_v<T> ? 0.5 : 0;
   const cv::Rect whole(0, 0, image.cols, image.rows);
   const cv::Rect box =
       cv::Rect(cv::Point(cvFloor(centre_px.x - radius_px), cvFloor(centre_px.y - radius_px)),
                cv::Point(cvCeil(centre_px.x + radius_px) + 1, cvCeil(centre_px.y + radius_px) + 1)) &
       whole;
   for (int v = box.y; v < box.br().y; ++v) {
-    uchar* row = image.ptr(v);
+    T* row = image.ptr<T>(v);
     for (int u = box.x; u < box.br().x; ++u) {
       const double distance_px = std::hypot(u - centre_px.x, v - centre_px.y);
-      row[u] = static_cast<uchar>(row[u] * transmission(distance_px, radius_px, opacity) + 0.5);
+      row[u] = static_cast<T>(row[u] * transmission(distance_px, radius_px, opacity) + kRounding);
     }
   }
 }
 
-void apply_dirt(const DirtFault& dirt, uint64_t seed, uint64_t stream, cv::Mat& image) {
+void apply_dirt(const DirtFault& dirt, uint64_t seed, uint64_t stream, int pixels_per_px, cv::Mat& image) {
   uint64_t counter = 0;
   const auto uniform = [&] {
     return static_cast<double>(random_bits(seed, stream, counter++) >> 11) * 0x1p-53;
   };
   for (int spot = 0; spot < dirt.spots; ++spot) {
     const double u_px = uniform() * image.cols, v_px = uniform() * image.rows;
-    darken_spot({u_px, v_px}, dirt.radius_px * (0.5 + uniform()), dirt.opacity, image);
+    const double radius_px = pixels_per_px * dirt.radius_px * (0.5 + uniform());
+    const auto darken = image.depth() == CV_8U ? &darken_spot<uchar> : &darken_spot<float>;
+    darken({u_px, v_px}, radius_px, dirt.opacity, image);
   }
 }
 
@@ -67,20 +72,20 @@ double light_factor(const std::vector<Fault>& faults, int camera, double time_s)
 }  // namespace
 
 void apply_image_faults(const std::vector<Fault>& faults, uint64_t seed, int camera, double time_s,
-                        cv::Mat& image) {
-  CV_Assert(image.type() == CV_8UC1);
+                        cv::Mat& image, int pixels_per_px) {
+  CV_Assert(image.type() == CV_8UC1 || image.type() == CV_32FC1);
   for (size_t i = 0; i < faults.size(); ++i) {
     const Fault& fault = faults[i];
     if (!fault.active(time_s)) continue;
     if (fault.blur && strikes(fault.blur->camera, camera)) {
-      cv::GaussianBlur(image, image, {}, fault.blur->sigma_px, 0, cv::BORDER_REPLICATE);
+      cv::GaussianBlur(image, image, {}, pixels_per_px * fault.blur->sigma_px, 0, cv::BORDER_REPLICATE);
     }
     if (fault.dirt && strikes(fault.dirt->camera, camera)) {
-      apply_dirt(*fault.dirt, seed, kStream + 2 * i + static_cast<uint64_t>(camera), image);
+      apply_dirt(*fault.dirt, seed, kStream + 2 * i + static_cast<uint64_t>(camera), pixels_per_px, image);
     }
   }
   const double factor = light_factor(faults, camera, time_s);
-  if (factor != 1) image.convertTo(image, CV_8U, factor);
+  if (factor != 1) image.convertTo(image, image.type(), factor);
 }
 
 }  // namespace groundloop::sim

@@ -76,6 +76,7 @@ struct Simulation::Wheeled : HeadCarrier {
   void take_slam_pose(int64_t of_exposure);
   std::array<double, 2> rolled_rad(const mjData& data) const;
   std::shared_ptr<mjData> state_at(int64_t stamp_ns);
+  std::vector<SubFrame> sub_frames(double middle_s);
   slam::Pose T_world_left(const mjData& data) const;
   slam::Pose planned_T_body_left(double time_s) const;
   Exposure expose();
@@ -94,6 +95,8 @@ struct Simulation::Wheeled : HeadCarrier {
   int start_line;
   Drive drive;
   slam::Pose T_body_left, T_left_right;  ///< as mounted, with the head straight ahead
+  const std::vector<double> sub_frame_times_s;
+  const double right_trigger_offset_s;
   std::optional<PanTilt> head_mount;
   PlannedPath path;
   int64_t step_ns, period_ns, exposures;
@@ -127,7 +130,9 @@ Simulation::Wheeled::Wheeled(const World& world_, const HeadModel& head, const S
       start_line(scenario.robot.start.line),
       drive(assumed_drive(world, scenario.robot)),
       T_body_left(head.rig().T_body_left),
-      T_left_right(Eigen::Translation3d(head.baseline_m, 0, 0)),
+      T_left_right(head.T_left_right()),
+      sub_frame_times_s(head.sub_frame_times_s()),
+      right_trigger_offset_s(head.raw ? head.raw->exposure.right_trigger_offset_s : 0),
       head_mount(PanTilt::find(world, scenario.robot.model, T_body_left)),
       path(scenario.robot.start, scenario.plan, drive.limits,
            head_mount ? head_mount->acceleration_radps2() : 1),
@@ -233,6 +238,17 @@ std::shared_ptr<mjData> Simulation::Wheeled::state_at(int64_t stamp_ns) {
   return copy;
 }
 
+/// The moments of an exposure, from the left camera's place.
+std::vector<SubFrame> Simulation::Wheeled::sub_frames(double middle_s) {
+  std::vector<SubFrame> subs;
+  for (const double from_middle_s : sub_frame_times_s) {
+    const double at_s = middle_s + from_middle_s;
+    const std::shared_ptr<mjData> moment = state_at(std::llround(at_s * 1e9));
+    subs.push_back({moment, lighting.at(at_s), T_world_left(*moment)});
+  }
+  return subs;
+}
+
 slam::Pose Simulation::Wheeled::T_world_left(const mjData& data) const {
   return head_mount ? head_mount->T_world_left(data) : body_pose(world, data) * T_body_left;
 }
@@ -252,17 +268,22 @@ Exposure Simulation::Wheeled::expose() {
   const double time_s = static_cast<double>(exposure.stamp_ns) * 1e-9;
 
   exposure.state = exposure.state_right = state_at(exposure.stamp_ns);
-  if (const double offset_s = trigger_offset_s(faults, time_s); offset_s != 0) {
-    exposure.state_right = state_at(exposure.stamp_ns + std::llround(offset_s * 1e9));
-  }
+  const double offset_s = trigger_offset_s(faults, time_s) + right_trigger_offset_s;
+  if (offset_s != 0) exposure.state_right = state_at(exposure.stamp_ns + std::llround(offset_s * 1e9));
 
   exposure.lights = lighting.at(time_s);
 
   // truth
   exposure.T_world_body = body_pose(world, *exposure.state);
   exposure.T_world_left = T_world_left(*exposure.state);
-  exposure.T_world_right =
-      T_world_left(*exposure.state_right) * T_left_right * T_calibrated_right(faults, time_s);
+  const slam::Pose T_left_right_now = T_left_right * T_calibrated_right(faults, time_s);
+  exposure.T_world_right = T_world_left(*exposure.state_right) * T_left_right_now;
+  if (sub_frame_times_s.size() > 1) {
+    exposure.left_sub_frames = sub_frames(time_s);
+    exposure.right_sub_frames = offset_s == 0 ? exposure.left_sub_frames : sub_frames(time_s + offset_s);
+    for (SubFrame& sub : exposure.right_sub_frames)
+      sub.T_world_camera = sub.T_world_camera * T_left_right_now;
+  }
 
   tell_expected_motion(exposure);
   return exposure;

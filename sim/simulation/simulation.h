@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "sim/head/head.h"
 #include "sim/scenario/scenario.h"
@@ -15,6 +16,13 @@ namespace groundloop::sim {
 
 /// Exposures that pass before a pose of the core acts on the wheels.
 inline constexpr int64_t kFeedbackPairs = 1;
+
+/// The scene at one moment of an image's exposure, for the camera that takes it.
+struct SubFrame {
+  std::shared_ptr<const mjData> state;
+  LightFactors lights;
+  slam::Pose T_world_camera;
+};
 
 /// The state of the world at one exposure, with its truth.
 struct Exposure {
@@ -32,6 +40,9 @@ struct Exposure {
   LightFactors lights;                  ///< how bright the lamps are
   std::shared_ptr<const mjData> state_right;  ///< the same for the right camera; another one only when it
                                               ///< exposes at another time
+  /// For a head that takes time for an image: the scene at each of HeadModel::sub_frame_times_s(). Empty when
+  /// there is nothing but the moment of the stamp, or nothing moves.
+  std::vector<SubFrame> left_sub_frames, right_sub_frames;
 };
 
 /// Pose of the left camera in the map (slam::FrameResult::T_map_left) that the core found for the images of
@@ -55,7 +66,8 @@ class HeadCarrier {
 /// Time: exposure k is at k times the head's period exactly. Physics runs in the model's own steps whatever
 /// the head's rate, so the drive is the same for every head; an exposure between two steps continues the last
 /// step's velocities for the remainder, in a copy of the state. That copy is both what is rendered and what
-/// is true.
+/// is true. The moments of an exposure that takes time are such continuations, too, before and after the
+/// stamp: for some milliseconds the velocities stay.
 ///
 /// `feedback: slam`: on the way from exposure k - 1 to k the robot steers by the core's pose of exposure
 /// k - 1 - kFeedbackPairs and by what its odometry counted since, however fast or slow the core is. The map

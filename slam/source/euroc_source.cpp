@@ -2,11 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <filesystem>
 #include <map>
-#include <opencv2/calib3d.hpp>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "slam/source/image_file.h"
@@ -111,37 +108,39 @@ std::map<int64_t, std::string> read_stamps(const std::string& folder, std::vecto
   return images;
 }
 
-struct Rectification {
-  StereoRig rig;
-  std::array<cv::Mat, 2> left, right;  ///< maps of cv::remap: whole pixels, fractions
-};
-
-Rectification rectify(const CameraFile& left, const CameraFile& right) {
+/// The calibration that the two sensor.yaml hold.
+StereoCalibration calibration_of(const CameraFile& left, const CameraFile& right, const std::string& file) {
   const Eigen::Matrix4d T_right_left = right.T_BS.matrix().inverse() * left.T_BS.matrix();
-  cv::Matx33d R_right_left;
-  cv::Vec3d t_right_left;
+  StereoCalibration result{file,
+                           left.size(),
+                           left.camera_matrix(),
+                           right.camera_matrix(),
+                           left.distortion_coefficients,
+                           right.distortion_coefficients,
+                           {},
+                           {},
+                           std::nullopt};
   for (int row = 0; row < 3; ++row) {
-    for (int col = 0; col < 3; ++col) R_right_left(row, col) = T_right_left(row, col);
-    t_right_left[row] = T_right_left(row, 3);
+    for (int col = 0; col < 3; ++col) result.R(row, col) = T_right_left(row, col);
+    result.T[row] = T_right_left(row, 3);
   }
-  const cv::Size size = left.size();
-  cv::Matx33d R_left, R_right;
-  cv::Matx34d P_left, P_right;
-  cv::Matx44d Q;
-  cv::stereoRectify(left.camera_matrix(), left.distortion_coefficients, right.camera_matrix(),
-                    right.distortion_coefficients, size, R_right_left, t_right_left, R_left, R_right, P_left,
-                    P_right, Q, cv::CALIB_ZERO_DISPARITY, 0);
-  Rectification result;
-  cv::initUndistortRectifyMap(left.camera_matrix(), left.distortion_coefficients, R_left, P_left, size,
-                              CV_16SC2, result.left[0], result.left[1]);
-  cv::initUndistortRectifyMap(right.camera_matrix(), right.distortion_coefficients, R_right, P_right, size,
-                              CV_16SC2, result.right[0], result.right[1]);
-  StereoRig& rig = result.rig;
-  rig.width_px = size.width, rig.height_px = size.height;
-  rig.fx_px = P_left(0, 0), rig.fy_px = P_left(1, 1);
-  rig.cx_px = P_left(0, 2), rig.cy_px = P_left(1, 2), rig.cx_right_px = P_right(0, 2);
-  rig.baseline_m = -P_right(0, 3) / P_right(0, 0);
   return result;
+}
+
+/// Of both cameras.
+StereoCalibration read_cameras(const std::string& left_folder, const std::string& right_folder,
+                               std::vector<Problem>& problems) {
+  const size_t before = problems.size();
+  const std::string right_file = right_folder + "/sensor.yaml";
+  const CameraFile left = read_camera(left_folder + "/sensor.yaml", problems);
+  const CameraFile right = read_camera(right_file, problems);
+  if (problems.size() > before) return {};
+  if (left.size() != right.size()) {
+    problems.push_back({right_file, 0, "resolution",
+                        fmt::format("{}x{}", right.resolution[0], right.resolution[1]),
+                        fmt::format("{}x{} as cam0", left.resolution[0], left.resolution[1])});
+  }
+  return calibration_of(left, right, right_file);
 }
 
 }  // namespace
@@ -151,16 +150,12 @@ EurocSource::EurocSource(const std::string& directory, const SourceOptions& opti
   const std::string base = has_mav0 ? directory + "/mav0" : directory;
   const std::string left_folder = base + "/cam0", right_folder = base + "/cam1";
   std::vector<Problem> problems;
-  const CameraFile left = read_camera(left_folder + "/sensor.yaml", problems);
-  const CameraFile right = read_camera(right_folder + "/sensor.yaml", problems);
+  StereoCalibration calibration;
+  if (options.calibration_files.empty()) calibration = read_cameras(left_folder, right_folder, problems);
   const auto left_images = read_stamps(left_folder, problems);
   const auto right_images = read_stamps(right_folder, problems);
   if (!problems.empty()) throw InputError(std::move(problems));
-  if (left.size() != right.size()) {
-    throw InputError(Problem{right_folder + "/sensor.yaml", 0, "resolution",
-                             fmt::format("{}x{}", right.resolution[0], right.resolution[1]),
-                             fmt::format("{}x{} as cam0", left.resolution[0], left.resolution[1])});
-  }
+  if (!options.calibration_files.empty()) calibration = read_stereo_calibration(options.calibration_files);
 
   for (const auto& [stamp_ns, left_file] : left_images) {
     const auto found = right_images.find(stamp_ns);
@@ -174,15 +169,10 @@ EurocSource::EurocSource(const std::string& directory, const SourceOptions& opti
         Problem{right_folder + "/data.csv", 0, "", "no stamp of cam0", "stamps that both cameras have"});
   }
 
-  Rectification rectification = rectify(left, right);
-  rig_ = rectification.rig;
+  rectifier_.emplace(calibration,
+                     calibration.size ? *calibration.size : read_grey_image(left_files_.front()).size());
+  rig_ = rectifier_->rig();
   rig_.T_body_left = StereoRig::level_camera({0, 0, options.camera_height_m});
-  if (!(rig_.baseline_m > 0)) {
-    throw InputError(Problem{right_folder + "/sensor.yaml", 0, "T_BS", fmt::format("{} m", rig_.baseline_m),
-                             "a camera to the right of cam0"});
-  }
-  left_map_ = std::move(rectification.left);
-  right_map_ = std::move(rectification.right);
 }
 
 std::optional<StereoFrame> EurocSource::next() {
@@ -192,8 +182,7 @@ std::optional<StereoFrame> EurocSource::next() {
   frame.stamp_ns = stamps_ns_[next_];
   const cv::Mat left = read_grey_image(left_files_[next_], rig_.width_px, rig_.height_px);
   const cv::Mat right = read_grey_image(right_files_[next_], rig_.width_px, rig_.height_px);
-  cv::remap(left, frame.left, left_map_[0], left_map_[1], cv::INTER_LINEAR);
-  cv::remap(right, frame.right, right_map_[0], right_map_[1], cv::INTER_LINEAR);
+  rectifier_->rectify(left, right, frame.left, frame.right);
   ++next_;
   return frame;
 }

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "slam/rectify/rectifier.h"
 #include "slam/source/source_options.h"
 #include "slam/source/stereo_source.h"
 
@@ -32,7 +31,7 @@ class EurocSource : public StereoSource {
   StereoRig rig_;
   std::vector<int64_t> stamps_ns_;
   std::vector<std::string> left_files_, right_files_;
-  std::array<cv::Mat, 2> left_map_, right_map_;  ///< rectification, for cv::remap: whole pixels, fractions
+  std::optional<Rectifier> rectifier_;
   int64_t next_ = 0;
 };
 
