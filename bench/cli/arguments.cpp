@@ -55,8 +55,14 @@ std::vector<sim::Override> overrides_of(const std::vector<std::string>& texts) {
   return overrides;
 }
 
+CLI::Option* add_repeatable(CLI::App& command, const std::string& name, std::vector<std::string>& values,
+                            const std::string& help) {
+  // Any number of times, but one value each time: what follows it may be the scenario file.
+  return command.add_option(name, values, help)->expected(-1)->allow_extra_args(false);
+}
+
 CLI::Option* add_set(CLI::App& command, std::vector<std::string>& set, const std::string& help) {
-  return command.add_option("--set", set, help)->type_name("KEY=VALUE")->expected(1)->allow_extra_args(false);
+  return add_repeatable(command, "--set", set, help)->type_name("KEY=VALUE");
 }
 
 }  // namespace groundloop::bench

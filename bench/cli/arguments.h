@@ -43,6 +43,10 @@ OracleStages parse_stages(const std::vector<std::string>& names);
 sim::Override parse_override(const std::string& text);
 std::vector<sim::Override> overrides_of(const std::vector<std::string>& texts);
 
+/// An option that may be given any number of times, with one value each time.
+CLI::Option* add_repeatable(CLI::App& command, const std::string& name, std::vector<std::string>& values,
+                            const std::string& help);
+
 /// The option `--set KEY=VALUE`, repeatable.
 CLI::Option* add_set(CLI::App& command, std::vector<std::string>& set, const std::string& help);
 

@@ -73,13 +73,10 @@ void add_run_command(CLI::App& app, CommandAction& action) {
       ->type_name("N");
   add_set(*command, raw->set,
           "set a key of the scenario, such as plan.speed_mps=0.2 or slam.preset=paper; repeatable");
-  command
-      ->add_option("--oracle", raw->oracles,
-                   "replace a stage by exact answers: tracking, stereo, motion or loops; repeatable. An "
-                   "experiment: the run says so everywhere")
-      ->type_name("STAGE")
-      ->expected(1)
-      ->allow_extra_args(false);
+  add_repeatable(*command, "--oracle", raw->oracles,
+                 "replace a stage by exact answers: tracking, stereo, motion or loops; repeatable. An "
+                 "experiment: the run says so everywhere")
+      ->type_name("STAGE");
   command
       ->add_option("--out", options->out, "run folder (of several runs: its parent); default runs/NAME-SEED")
       ->type_name("DIR");

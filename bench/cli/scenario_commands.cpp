@@ -109,15 +109,10 @@ void add_preview_command(CLI::App& app, CommandAction& action) {
   command->add_option("--export", *folder, "write what is generated into a folder, to be edited, in place of a picture")
       ->type_name("DIR");
   const auto set = std::make_shared<std::vector<std::string>>();
-  command->add_option("--set", *set, "change a key of the scenario")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->allow_extra_args(false);
+  add_set(*command, *set, "set a key of the scenario; repeatable");
   command->callback([=, &action] {
     action = [=] {
-      std::vector<sim::Override> overrides;
-      for (const std::string& text : *set) overrides.push_back(parse_override(text));
-      const sim::Scenario scenario = sim::load_scenario(*file, overrides);
+      const sim::Scenario scenario = sim::load_scenario(*file, overrides_of(*set));
       if (folder->empty()) {
         fmt::print("{}\n", preview(scenario, *out));
       } else {

@@ -1,12 +1,26 @@
 #include "slam/features/detector.h"
 
 #include <algorithm>
-#include <opencv2/imgproc.hpp>
+#include <cstring>
+#include <opencv2/core.hpp>
+
+#include "slam/features/multiversion.h"
 
 namespace groundloop::slam {
 namespace {
 
-constexpr int kBlockSize = 5;
+/// Marks the local maxima of the 3 x 3 neighbourhood; ties go to the first in reading order.
+/// @param n  pixels; one more is read on both sides
+GROUNDLOOP_MULTIVERSION
+void mark_maxima(const float* __restrict above, const float* __restrict here, const float* __restrict below,
+                 float least, uint8_t* __restrict marks, int n) {
+  for (int u = 0; u < n; ++u) {
+    const float r = here[u];
+    const int before = (r > here[u - 1]) & (r > above[u - 1]) & (r > above[u]) & (r > above[u + 1]);
+    const int after = (r >= here[u + 1]) & (r >= below[u - 1]) & (r >= below[u]) & (r >= below[u + 1]);
+    marks[u] = static_cast<uint8_t>((r >= least) & before & after);
+  }
+}
 
 /// Spatial hash that answers whether any taken point lies within a distance.
 class Neighbourhood {
@@ -55,24 +69,23 @@ const std::vector<Eigen::Vector2f>& Detector::detect(const cv::Mat& grey,
   corners_.clear();
   if (wanted <= 0 || grey.cols <= 2 * border_px + 2 || grey.rows <= 2 * border_px + 2) return corners_;
 
-  cv::cornerMinEigenVal(grey, response_, kBlockSize, 3);
+  const cv::Mat& response = response_.compute(grey);
   const cv::Rect inside(border_px, border_px, grey.cols - 2 * border_px, grey.rows - 2 * border_px);
   double strongest = 0;
-  cv::minMaxLoc(response_(inside), nullptr, &strongest);
+  cv::minMaxLoc(response(inside), nullptr, &strongest);
   const auto least = static_cast<float>(std::max(options_.quality * strongest, options_.min_response));
 
-  // local maxima of the 3 x 3 neighbourhood; ties go to the first in reading order
   candidates_.clear();
+  marks_.resize(inside.width);
   for (int v = inside.y; v < inside.y + inside.height; ++v) {
-    const float* above = response_.ptr<float>(v - 1);
-    const float* here = response_.ptr<float>(v);
-    const float* below = response_.ptr<float>(v + 1);
-    for (int u = inside.x; u < inside.x + inside.width; ++u) {
-      const float r = here[u];
-      if (r < least || r <= here[u - 1] || r < here[u + 1]) continue;
-      if (r <= above[u - 1] || r <= above[u] || r <= above[u + 1]) continue;
-      if (r < below[u - 1] || r < below[u] || r < below[u + 1]) continue;
-      candidates_.push_back({r, u, v});
+    const float* here = response.ptr<float>(v) + inside.x;
+    mark_maxima(response.ptr<float>(v - 1) + inside.x, here, response.ptr<float>(v + 1) + inside.x, least,
+                marks_.data(), inside.width);
+    const uint8_t* const end = marks_.data() + inside.width;
+    for (const uint8_t* mark = marks_.data();
+         (mark = static_cast<const uint8_t*>(std::memchr(mark, 1, end - mark))) != nullptr; ++mark) {
+      const auto u = static_cast<int>(mark - marks_.data());
+      candidates_.push_back({here[u], inside.x + u, v});
     }
   }
   std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {

@@ -4,6 +4,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
+#include "slam/features/corner_response.h"
 #include "slam/types/config.h"
 
 namespace groundloop::slam {
@@ -43,7 +44,8 @@ class Detector {
     int u, v;
   };
   DetectionOptions options_;
-  cv::Mat response_;
+  CornerResponse response_;
+  std::vector<uint8_t> marks_;
   std::vector<Candidate> candidates_;
   std::vector<Eigen::Vector2f> corners_;
 };

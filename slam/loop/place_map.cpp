@@ -24,10 +24,6 @@ Matrix6d chained(const Matrix6d& covariance_b, const Pose& T_b_c, const Matrix6d
   return Ad * covariance_b * Ad.transpose() + covariance_c;
 }
 
-RelativeMotion operator*(const RelativeMotion& a, const RelativeMotion& b) {
-  return {a.T_from_to * b.T_from_to, chained(a.covariance, b.T_from_to, b.covariance)};
-}
-
 RelativeMotion inverse(const RelativeMotion& motion) {
   const Matrix6d Ad = se3_adjoint(motion.T_from_to);
   return {motion.T_from_to.inverse(), Ad * motion.covariance * Ad.transpose()};
@@ -47,6 +43,10 @@ Tie fused(const Tie& seen, const RelativeMotion& known) {
 RelativeMotion motion_of(const Tie& tie) { return {tie.T_place_left, tie.covariance}; }
 
 }  // namespace
+
+RelativeMotion operator*(const RelativeMotion& a, const RelativeMotion& b) {
+  return {a.T_from_to * b.T_from_to, chained(a.covariance, b.T_from_to, b.covariance)};
+}
 
 void PlaceMap::advance(const OdometryPose& newest, std::span<const OdometryPose> known_better) {
   path_.push_back(newest);

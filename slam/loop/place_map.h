@@ -30,6 +30,9 @@ struct RelativeMotion {
   Matrix6d covariance = Matrix6d::Zero();  ///< right perturbation in `to`
 };
 
+/// One motion after the other, of independent errors.
+RelativeMotion operator*(const RelativeMotion& a, const RelativeMotion& b);
+
 /// Places of the map, joined by what odometry and recognition measured between them.
 ///
 /// A place is a key frame that is kept. Odometry goes on from the tie: where the robot was last known to

@@ -8,6 +8,8 @@ namespace groundloop::slam {
 struct MapMatchOptions {
   bool enabled = true;
   int key_frames = 15;            ///< the newest so many make the local map
+  int min_age_frames = 150;       ///< younger looks are not in the global map that is matched against
+  double min_prior_sigma_m = 0.02;  ///< a pose known better than this gains nothing from a match
   double search_sigma = 3;        ///< half the search window, in standard deviations of what is known before
   double max_window_m = 0.5;      ///< half the search window, at most
   double max_window_deg = 10;     ///< half the search window, at most
@@ -22,6 +24,8 @@ struct MapMatchOptions {
   void visit(Archive& a) {
     a("enabled", enabled);
     a("key_frames", key_frames, {.min = 1, .max = 1000});
+    a("min_age_frames", min_age_frames, {.min = 1, .max = 1000000});
+    a("min_prior_sigma_m", min_prior_sigma_m, {.min = 0, .max = 10});
     a("search_sigma", search_sigma, {.min = 0.1, .max = 100});
     a("max_window_m", max_window_m, {.min = 0.01, .max = 20});
     a("max_window_deg", max_window_deg, {.min = 0.1, .max = 180});

@@ -12,13 +12,23 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+const Oracle* unless_own_work(const Oracle* oracle, OracleStage stage) {
+  return oracle != nullptr && oracle->replaces(stage) ? oracle : nullptr;
+}
+
 }  // namespace
 
 BackEnd::BackEnd(const StereoRig& rig, const SlamOptions& options, const Oracle* oracle)
     : options_(options),
-      oracle_(oracle != nullptr && oracle->replaces(OracleStage::kLoops) ? oracle : nullptr),
+      exact_loops_(unless_own_work(oracle, OracleStage::kLoops)),
+      exact_stereo_(unless_own_work(oracle, OracleStage::kStereo)),
       detector_(rig, options.loop, options.klt, options.stereo, options.registration, options.seed),
-      map_(rig, options.mapping, options.key_frame.looks_kept) {}
+      dense_points_(options.dense_map),
+      map_(rig, options.mapping, options.key_frame.looks_kept) {
+  if (options.map_match.enabled) {
+    map_registration_.emplace(rig, options.mapping, options.map_match, options.key_frame.looks_kept);
+  }
+}
 
 BackEndAnswer BackEnd::process(HandedOver handed_over) {
   const Clock::time_point start = Clock::now();
@@ -29,10 +39,14 @@ BackEndAnswer BackEnd::process(HandedOver handed_over) {
   recognise(handed_over, link);
   const double loop_ms = milliseconds_since(start);
 
-  const Tie here = places_.standing(handed_over.pose.key_frame);
-  handed_over.look.key_frame = here.key_frame;
-  handed_over.look.place = here.place;
-  handed_over.look.T_place_left = here.T_place_left;
+  look_densely(handed_over.sight, handed_over.look);
+  tie(handed_over.look);
+  if (map_registration_) {
+    map_registration_->add(handed_over.look, handed_over.sight.index, handed_over.starts_segment,
+                           places_.T_map_place());
+    if (!link) register_map(link);
+    tie(handed_over.look);
+  }
   map_.add(std::move(handed_over.look), places_.T_map_place());
 
   BackEndAnswer result = answer();
@@ -50,7 +64,7 @@ BackEndAnswer BackEnd::finish(const std::vector<OdometryPose>& known_better) {
 
 void BackEnd::recognise(const HandedOver& handed_over, std::optional<LoopLink>& link) {
   bool is_place = true;
-  if (oracle_ != nullptr) {
+  if (exact_loops_ != nullptr) {
     link = ask_oracle(handed_over.sight.index);
     is_place = !link;
     if (is_place) stored_places_.push_back(handed_over.pose.key_frame);
@@ -74,13 +88,48 @@ void BackEnd::recognise(const HandedOver& handed_over, std::optional<LoopLink>& 
   }
 }
 
+/// Ties the newest key frame's look to its place.
+void BackEnd::tie(Look& look) const {
+  const Tie here = places_.standing(static_cast<int>(frames_.size()) - 1);
+  look.key_frame = here.key_frame;
+  look.place = here.place;
+  look.T_place_left = here.T_place_left;
+}
+
+/// Adds points of the dense disparity to a look.
+void BackEnd::look_densely(const LoopKeyFrame& sight, Look& look) {
+  if (options_.dense_map.step_px <= 0) return;
+  for (const DensePoint& point : dense_points_.measure(sight.left, sight.right, sight.half_disparity)) {
+    Eigen::Vector3f uvu_px = point.uvu_px;
+    if (exact_stereo_ != nullptr) {
+      const auto exact_px = exact_stereo_->disparity_px(sight.index, uvu_px.head<2>().cast<double>());
+      if (!exact_px) continue;
+      uvu_px.z() = uvu_px.x() - static_cast<float>(*exact_px);
+    }
+    look.observations.push_back({uvu_px, static_cast<float>(options_.dense_map.weight), point.sigma_px});
+  }
+}
+
+/// Finds the newest key frame's pose by the local map.
+void BackEnd::register_map(std::optional<LoopLink>& link) {
+  const std::optional<MapSight> sight = map_registration_->match(places_);
+  if (!sight) return;
+  const auto newest = static_cast<int>(frames_.size()) - 1;
+  const Tie from = places_.standing(sight->from_key_frame);
+  const RelativeMotion seen = RelativeMotion{from.T_place_left, from.covariance} *
+                              RelativeMotion{sight->T_from_to, sight->covariance};
+  if (!places_.recognise({from.place, newest, seen.T_from_to, seen.covariance}, false)) return;
+  link = LoopLink{LinkKind::kMap,   frames_[sight->from_key_frame], frames_[newest],
+                  sight->T_from_to, sight->covariance,              sight->cells};
+}
+
 std::optional<LoopLink> BackEnd::ask_oracle(int64_t frame) const {
   constexpr double kExact = 1e-4;  // metres and radians; an edge of no uncertainty has no information
   std::optional<LoopLink> nearest;
   for (const int key_frame : stored_places_) {
     const int64_t from = frames_[key_frame];
     if (from > frame - options_.loop.min_age_frames) break;
-    const std::optional<Pose> T_from_to = oracle_->loop_T_from_to(from, frame);
+    const std::optional<Pose> T_from_to = exact_loops_->loop_T_from_to(from, frame);
     if (!T_from_to) continue;
     if (nearest && nearest->T_from_to.translation().norm() <= T_from_to->translation().norm()) continue;
     nearest = LoopLink{LinkKind::kLandmarks, from, frame, *T_from_to, kExact * kExact * Matrix6d::Identity()};

@@ -7,7 +7,9 @@
 #include "slam/loop/loop_detector.h"
 #include "slam/loop/place_map.h"
 #include "slam/mapping/map_builder.h"
+#include "slam/pipeline/map_registration.h"
 #include "slam/pipeline/options.h"
+#include "slam/stereo/dense_points.h"
 #include "slam/types/oracle.h"
 
 namespace groundloop::slam {
@@ -18,8 +20,8 @@ struct HandedOver {
   std::vector<OdometryPose> known_better;  ///< earlier key frames that were refined meanwhile
   bool starts_segment = false;
   Pose T_map_left = Pose::Identity();  ///< where it is believed to be, when it starts a segment
-  LoopKeyFrame sight;                  ///< images only when places are recognised by them
-  Look look;                           ///< its place is found by the back end
+  LoopKeyFrame sight;                  ///< images only when somebody looks at them
+  Look look;                           ///< its features; the back end finds its place and adds dense points
 };
 
 /// What the back end knows after a key frame.
@@ -48,17 +50,23 @@ class BackEnd {
  private:
   /// Finds out where the key frame is, and makes it a place when it is a new one.
   void recognise(const HandedOver& handed_over, std::optional<LoopLink>& link);
+  void tie(Look& look) const;
+  void look_densely(const LoopKeyFrame& sight, Look& look);
+  void register_map(std::optional<LoopLink>& link);
   std::optional<LoopLink> ask_oracle(int64_t frame) const;
   int key_frame_of(int64_t frame) const;
   BackEndAnswer answer() const;
 
   SlamOptions options_;
-  const Oracle* oracle_;  ///< null unless it replaces recognition
+  const Oracle* exact_loops_;   ///< null unless it replaces recognition
+  const Oracle* exact_stereo_;  ///< null unless it replaces stereo
   LoopDetector detector_;
   PlaceMap places_;
+  DensePoints dense_points_;
   MapBuilder map_;
+  std::optional<MapRegistration> map_registration_;  ///< none when it is not wanted
   std::vector<int64_t> frames_;     ///< by key frame
-  std::vector<int> stored_places_;  ///< key frames that oracle_ may recognise
+  std::vector<int> stored_places_;  ///< key frames that exact_loops_ may recognise
 };
 
 }  // namespace groundloop::slam

@@ -211,17 +211,4 @@ void FrontEnd::measure_key_frame() {
   kf_median_depth_m_ = *middle;
 }
 
-const std::vector<DensePoint>& FrontEnd::dense_points(const StereoFrame& frame) {
-  const std::vector<DensePoint>& measured = dense_points_.measure(frame.left, frame.right, dense_);
-  if (!replaced(OracleStage::kStereo)) return measured;
-  exact_points_ = measured;
-  std::erase_if(exact_points_, [&](DensePoint& point) {
-    Eigen::Vector3f& uvu = point.uvu_px;
-    const auto disparity = oracle_->disparity_px(frame.index, uvu.head<2>().cast<double>());
-    if (disparity) uvu.z() = uvu.x() - static_cast<float>(*disparity);
-    return !disparity;
-  });
-  return exact_points_;
-}
-
 }  // namespace groundloop::slam

@@ -7,7 +7,6 @@
 #include "slam/pipeline/options.h"
 #include "slam/pipeline/stage_clock.h"
 #include "slam/registration/registration.h"
-#include "slam/stereo/dense_points.h"
 #include "slam/stereo/disparity.h"
 #include "slam/stereo/matcher.h"
 #include "slam/tracking/rotation_alignment.h"
@@ -55,8 +54,6 @@ class FrontEnd {
   const ImagePyramid& right() const { return right_; }
   /// Of the last key frame.
   const DenseDisparity& dense() const { return dense_; }
-  /// Points of the dense map for the occupancy map. Reused at the next call.
-  const std::vector<DensePoint>& dense_points(const StereoFrame& frame);
 
   size_t key_frame_features() const { return kf_features_; }       ///< reconstructed at the last key frame
   double key_frame_depth_m() const { return kf_median_depth_m_; }  ///< median of theirs
@@ -89,8 +86,6 @@ class FrontEnd {
   RegistrationResult registered_;
   std::vector<Eigen::Vector2f> occupied_;
   std::vector<double> depths_m_;
-  DensePoints dense_points_{options_.dense_map};
-  std::vector<DensePoint> exact_points_;  ///< with an oracle
 
   int64_t kf_frame_ = 0;
   size_t kf_features_ = 0;

@@ -8,6 +8,7 @@
 #include "slam/features/detector.h"
 #include "slam/loop/loop_options.h"
 #include "slam/mapping/flog_options.h"
+#include "slam/mapping/map_match_options.h"
 #include "slam/registration/registration.h"
 #include "slam/stereo/dense_points.h"
 #include "slam/stereo/disparity.h"
@@ -40,8 +41,8 @@ struct KeyFrameOptions {
 /// What is done beside the frame path, on a second core. YAML: slam.background
 struct BackgroundOptions {
   bool threads = true;            ///< false: done at once, with the same results at the same frames
-  int adjustment_lag_frames = 1;  ///< after a key frame, until its adjustment enters
-  int map_lag_frames = 5;         ///< after a key frame, until what was recognised in it enters
+  int adjustment_lag_frames = 2;  ///< after a key frame, until its adjustment enters
+  int map_lag_frames = 8;         ///< after a key frame, until what was recognised in it enters
 
   template <class Archive>
   void visit(Archive& a) {
@@ -65,6 +66,7 @@ struct SlamOptions {
   FlogOptions mapping;
   DenseMapOptions dense_map;
   LoopOptions loop;
+  MapMatchOptions map_match;
   BackgroundOptions background;
 
   template <class Archive>
@@ -81,6 +83,7 @@ struct SlamOptions {
     a("mapping", mapping);
     a("dense_map", dense_map);
     a("loop", loop);
+    a("map_match", map_match);
     a("background", background);
   }
 };

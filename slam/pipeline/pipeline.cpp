@@ -76,7 +76,7 @@ struct Pipeline::Impl {
 
   bool started = false;
   int segment = 0;
-  int frames_lost = 0;
+  int64_t known_ns = 0;   ///< time of the last frame whose pose was seen
   size_t steps_held = 0;  ///< newest steps that only the plan gave a pose
   int segment_key_frames = 0;
   Pose T_odom_kf = Pose::Identity();
@@ -207,7 +207,7 @@ void Pipeline::Impl::track_frame(const StereoFrame& frame, StageClock& clock, Fr
     result.status = TrackingStatus::kTracking;
     T_previous_left = T_kf_left.inverse() * registered.T_from_to;
     T_kf_left = registered.T_from_to;
-    frames_lost = 0;
+    known_ns = frame.stamp_ns;
   } else {
     result.status = TrackingStatus::kLost;
     result.message = registered.message;
@@ -215,9 +215,10 @@ void Pipeline::Impl::track_frame(const StereoFrame& frame, StageClock& clock, Fr
   }
 }
 
-/// Without a pose the plan is believed for some frames; then everything starts anew where the plan says.
+/// Without a pose the plan is believed for some time; then everything starts anew where the plan says.
 void Pipeline::Impl::lose(const StereoFrame& frame, StageClock& clock, FrameResult& result) {
-  if (++frames_lost <= options.tracking.hold_lost_frames) return;
+  constexpr double kNanosecond_s = 1e-9;
+  if (static_cast<double>(frame.stamp_ns - known_ns) * kNanosecond_s <= options.tracking.hold_lost_s) return;
   const std::string why = result.message;
   start_segment(frame, clock, result);
   result.status = TrackingStatus::kLost;
@@ -241,7 +242,7 @@ void Pipeline::Impl::start_segment(const StereoFrame& frame, StageClock& clock, 
   T_kf_left.setIdentity();
   if (!first) ++segment;
   started = true;
-  frames_lost = 0;
+  known_ns = frame.stamp_ns;
   result.status = TrackingStatus::kStarted;
   window.clear();
   stop_here(frame, true, Matrix6d::Zero(), result);
@@ -319,7 +320,7 @@ void Pipeline::Impl::give_to_back_end(const StereoFrame& frame, bool starts_segm
   handed_over->starts_segment = starts_segment;
   handed_over->T_map_left = T_map_odom() * T_odom_kf;
   handed_over->sight.index = frame.index;
-  if (options.loop.enabled) {
+  if (options.loop.enabled || options.dense_map.step_px > 0) {
     handed_over->sight.left = frame.left.clone();
     handed_over->sight.right = frame.right.clone();
     handed_over->sight.half_disparity = front.dense().half_resolution().clone();
@@ -330,7 +331,7 @@ void Pipeline::Impl::give_to_back_end(const StereoFrame& frame, bool starts_segm
                  [this, handed_over] { return back.process(std::move(*handed_over)); });
 }
 
-/// The points of a key frame for the map and the cloud. Section 2.4.
+/// The features of a key frame for the map and the cloud. Section 2.4.
 Look Pipeline::Impl::look(const StereoFrame& frame) {
   constexpr double kTrustedAfter = 3;  // key frames; a point seen once is trusted a third
   Look look;
@@ -344,12 +345,6 @@ Look Pipeline::Impl::look(const StereoFrame& frame) {
     look.points.push_back(
         {feature.p_kf.cast<float>(), static_cast<float>(std::sqrt(feature.covariance_kf(2, 2))),
          frame.left.at<uint8_t>(cvRound(feature.left.uv_px.y()), cvRound(feature.left.uv_px.x()))});
-  }
-  if (options.dense_map.step_px > 0) {
-    for (const DensePoint& point : front.dense_points(frame)) {
-      look.observations.push_back(
-          {point.uvu_px, static_cast<float>(options.dense_map.weight), point.sigma_px});
-    }
   }
   return look;
 }

@@ -7,7 +7,7 @@ namespace {
 SlamOptions paper() {
   SlamOptions options;
   options.tracking.max_features = 400;
-  options.tracking.hold_lost_frames = 0;
+  options.tracking.hold_lost_s = 0;
   options.tracking.min_kept_ratio = 0;
   options.klt.max_sigma_px = 0.3;
   options.registration.cost = RegistrationCost::kScalarQuadratic;
@@ -21,6 +21,7 @@ SlamOptions paper() {
   options.dense_map.step_px = 0;
   options.adjustment.key_frames = 0;
   options.loop.enabled = false;
+  options.map_match.enabled = false;
   // Every registration adds its error to the path, and the scalar weights make it a large one: key frames are
   // fewer than with the whole covariance.
   options.key_frame.min_tracked_ratio = 0.45;

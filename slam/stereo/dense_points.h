@@ -50,9 +50,10 @@ class DensePoints {
   explicit DensePoints(const DenseMapOptions& options) : options_(options) {}
 
   /// @param left,right  the pair that `rough` was computed from, CV_8UC1
+  /// @param rough       half-resolution map, see DenseDisparity::half_resolution()
   /// @return points, row by row; valid until the next call
   const std::vector<DensePoint>& measure(const cv::Mat& left, const cv::Mat& right,
-                                         const DenseDisparity& rough);
+                                         const cv::Mat& rough);
 
  private:
   DenseMapOptions options_;

@@ -42,16 +42,16 @@ void DenseDisparity::forget_matches_outside() {
   }
 }
 
-void DenseDisparity::sample(int step_px, std::vector<Eigen::Vector3f>& uvu_px) const {
+void sample_disparity(const cv::Mat& half_resolution, int step_px, std::vector<Eigen::Vector3f>& uvu_px) {
   constexpr int kReach = 2;
   constexpr int kSmooth =
       kFixedPoint;  // neighbours that differ by more than one half-resolution px: a jump of depth
   const int step = std::max(step_px / 2, 1);
-  for (int v = step / 2 + kReach; v + kReach < disparity_.rows; v += step) {
-    const auto* here = disparity_.ptr<int16_t>(v);
-    const auto* above = disparity_.ptr<int16_t>(v - kReach);
-    const auto* below = disparity_.ptr<int16_t>(v + kReach);
-    for (int u = step / 2 + kReach; u + kReach < disparity_.cols; u += step) {
+  for (int v = step / 2 + kReach; v + kReach < half_resolution.rows; v += step) {
+    const auto* here = half_resolution.ptr<int16_t>(v);
+    const auto* above = half_resolution.ptr<int16_t>(v - kReach);
+    const auto* below = half_resolution.ptr<int16_t>(v + kReach);
+    for (int u = step / 2 + kReach; u + kReach < half_resolution.cols; u += step) {
       const int d = here[u];
       const auto smooth = [d](int neighbour) { return neighbour >= 0 && std::abs(neighbour - d) <= kSmooth; };
       if (d <= 0 || !smooth(here[u - kReach]) || !smooth(here[u + kReach]) || !smooth(above[u]) ||

@@ -34,6 +34,10 @@ struct DisparityOptions {
 /// full-resolution pixel: the median of the known values around it.
 std::optional<float> disparity_around(const cv::Mat& half_resolution, float u_px, float v_px);
 
+/// Known disparities of a half-resolution map on a grid, away from the jumps of depth: appends
+/// (u_left, v, u_right) [full-resolution px].
+void sample_disparity(const cv::Mat& half_resolution, int step_px, std::vector<Eigen::Vector3f>& uvu_px);
+
 /// Dense disparity by block matching on half-resolution images: rough, and cheap. Section 2.2 of the paper.
 class DenseDisparity {
  public:
@@ -44,10 +48,6 @@ class DenseDisparity {
 
   /// Half-resolution map, CV_16SC1: disparity in half-resolution px times 16; negative where unknown.
   const cv::Mat& half_resolution() const { return disparity_; }
-
-  /// Known disparities on a grid, away from the jumps of depth: appends (u_left, v, u_right) [full-resolution
-  /// px].
-  void sample(int step_px, std::vector<Eigen::Vector3f>& uvu_px) const;
 
   /// disparity_around() of this map.
   std::optional<float> around(float u_px, float v_px) const {

@@ -17,7 +17,7 @@ namespace groundloop::slam {
 struct TrackingOptions {
   int max_features = 460;    ///< aimed at after every key frame in 640 x 480 px, more in a larger image
   int start_level = 1;       ///< coarsest pyramid level searched first; all levels are tried when it fails
-  int hold_lost_frames = 3;  ///< frames without pose that are waited for before a new segment is started
+  double hold_lost_s = 0.45;  ///< time without a pose that is waited for before a new segment is started
 
   double min_kept_ratio = 0.3;  ///< agreeing features, of those that should be in view; fewer: lost
 
@@ -26,7 +26,7 @@ struct TrackingOptions {
     a("min_kept_ratio", min_kept_ratio, {.min = 0, .max = 1});
     a("max_features", max_features, {.min = 20, .max = 5000});
     a("start_level", start_level, {.min = 0, .max = 5});
-    a("hold_lost_frames", hold_lost_frames, {.min = 0, .max = 1000});
+    a("hold_lost_s", hold_lost_s, {.min = 0, .max = 1000});
   }
 };
 

@@ -281,6 +281,18 @@ TEST(Run, RefusesBadArgumentsBeforeAnythingRuns) {
   EXPECT_EQ(groundloop("run").exit_code, 2);
 }
 
+TEST(Run, TakesRepeatableOptionsManyTimesAndOneValueEach) {
+  // Whatever was given last is what is wrong here: the ones before it, and the scenario after it, were taken.
+  const Answer set = groundloop("run --set seed=2 --set plan.speed_mps=0.2 --set seed scenarios/smoke.yaml");
+  EXPECT_EQ(set.err, "--set: seed: wanted key=value, such as slam.preset=paper\n");
+  const Answer oracle = groundloop("run --oracle motion --oracle depth scenarios/smoke.yaml");
+  EXPECT_EQ(oracle.err, "--oracle: depth: wanted one of: tracking, stereo, motion, loops\n");
+  const Answer replay = groundloop("replay --set seed=2 --set seed no/such/sequence");
+  EXPECT_EQ(replay.err, "--set: seed: wanted key=value, such as slam.preset=paper\n");
+  const Answer preview = groundloop("preview --set seed=2 --set seed scenarios/smoke.yaml");
+  EXPECT_EQ(preview.err, "--set: seed: wanted key=value, such as slam.preset=paper\n");
+}
+
 TEST(Run, NamesAMissingScenario) {
   const Answer answer = groundloop("run absent.yaml");
   EXPECT_EQ(answer.exit_code, 2);

@@ -143,7 +143,7 @@ TEST_F(PipelineTest, FeaturesKeepTheirNumber) {
 
 TEST_F(PipelineTest, ABlackoutIsReportedWaitedForAndEnded) {
   SlamOptions options;
-  options.tracking.hold_lost_frames = 2;
+  options.tracking.hold_lost_s = 0.3;
   Pipeline core(room_.rig(), options);
   std::vector<TrackingStatus> statuses;
   std::vector<int> segments;
@@ -169,7 +169,7 @@ TEST_F(PipelineTest, ABlackoutIsReportedWaitedForAndEnded) {
 
 TEST_F(PipelineTest, AShortBlackoutIsBridgedWithinTheSegment) {
   SlamOptions options;
-  options.tracking.hold_lost_frames = 3;
+  options.tracking.hold_lost_s = 0.45;
   Pipeline core(room_.rig(), options);
   std::vector<TrackingStatus> statuses;
   for (int64_t i = 0; i < 8; ++i) {

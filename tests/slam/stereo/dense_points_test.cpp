@@ -43,7 +43,7 @@ std::vector<DensePoint> measure(const Pair& pair, const DenseMapOptions& options
   DenseDisparity rough({});
   rough.compute(pair.left, pair.right);
   DensePoints points(options);
-  return points.measure(pair.left, pair.right, rough);
+  return points.measure(pair.left, pair.right, rough.half_resolution());
 }
 
 struct Errors {
