@@ -4,8 +4,8 @@
 
 #include "bench/runner/slam_options.h"
 #include "sim/generate/realize.h"
-#include "sim/head/head.h"
 #include "sim/scenario/scenario.h"
+#include "sim/simulation/carried_head.h"
 #include "sim/simulation/simulation.h"
 #include "sim/world/world.h"
 
@@ -30,7 +30,7 @@ std::vector<Problem> problems_of_scenario(const std::string& file) {
   const auto scenario = attempt(problems, [&] { return sim::realized(sim::load_scenario(file)); });
   if (!scenario) return problems;
   attempt(problems, [&] { return slam_options(*scenario); });
-  const auto head = attempt(problems, [&] { return sim::load_head(scenario->head.model); });
+  const auto head = attempt(problems, [&] { return sim::carried_head(*scenario); });
   const auto world = attempt(problems, [&] { return sim::World::load(*scenario); });
   if (head && world) {
     attempt(problems, [&] { return sim::Simulation(*world, *head, *scenario).exposures(); });

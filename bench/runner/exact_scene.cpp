@@ -12,6 +12,11 @@ sim::World::DataPtr state_of(const sim::SceneMotion& motion, const sim::World& w
 
 }  // namespace
 
+MapBand map_band(const sim::Scenario& scenario) {
+  const double scale = scenario.slam.scale * scenario.scale;
+  return {.min_m = 0.02 * scale, .max_m = 2.0 * scale, .sight_m = 8.0 * scale};
+}
+
 sim::TruthWorld exact_scene(const sim::World& world) {
   const sim::World::DataPtr data = world.make_data();
   mj_forward(&world.model(), data.get());
@@ -19,7 +24,8 @@ sim::TruthWorld exact_scene(const sim::World& world) {
 }
 
 SceneInTime::SceneInTime(const sim::World& world, const sim::Scenario& scenario)
-    : motion_(world, scenario),
+    : band_(map_band(scenario)),
+      motion_(world, scenario),
       state_(state_of(motion_, world)),
       seen_(world, *state_, sim::People::kSeen),
       standing_(world, *state_) {}
@@ -33,9 +39,9 @@ bool SceneInTime::move_to(double time_s) {
   return furniture;
 }
 
-std::vector<Footprint> scene_outline(const sim::TruthWorld& world) {
+std::vector<Footprint> scene_outline(const sim::TruthWorld& world, const MapBand& band) {
   std::vector<Footprint> outline;
-  for (const sim::Outline& footprint : world.footprints(kBandMin_m, kBandMax_m)) {
+  for (const sim::Outline& footprint : world.footprints(band.min_m, band.max_m)) {
     outline.push_back({footprint.name, footprint.polygon});
   }
   return outline;

@@ -9,9 +9,15 @@
 
 namespace groundloop::bench {
 
-/// Heights between which the exact map is taken: above the floor, up to 2 m as the paper's.
-inline constexpr double kBandMin_m = 0.02;
-inline constexpr double kBandMax_m = 2.0;
+/// What of the scene an exact map is made of.
+struct MapBand {
+  double min_m;    ///< heights: above the floor ..
+  double max_m;    ///< .. up to 2 m as the paper's
+  double sight_m;  ///< how far a cell may be to count as seen
+};
+
+/// Of a room, times the size of the scenario's scene relative to a room.
+MapBand map_band(const sim::Scenario& scenario);
 
 /// The exact scene, standing as in the world's file, without people.
 sim::TruthWorld exact_scene(const sim::World& world);
@@ -28,14 +34,16 @@ class SceneInTime {
   const sim::TruthWorld& seen() const { return seen_; }
   /// What a map should hold: without people, furniture where it stands now.
   const sim::TruthWorld& standing() const { return standing_; }
+  const MapBand& band() const { return band_; }
 
  private:
+  const MapBand band_;
   sim::SceneMotion motion_;
   sim::World::DataPtr state_;
   sim::TruthWorld seen_, standing_;
 };
 
 /// Outlines of everything that reaches into the band.
-std::vector<Footprint> scene_outline(const sim::TruthWorld& world);
+std::vector<Footprint> scene_outline(const sim::TruthWorld& world, const MapBand& band);
 
 }  // namespace groundloop::bench

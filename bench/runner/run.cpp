@@ -26,6 +26,8 @@
 #include "bench/runner/timing_metrics.h"
 #include "bench/runner/truth_oracle.h"
 #include "sim/generate/realize.h"
+#include "sim/head/calibration_file.h"
+#include "sim/simulation/carried_head.h"
 #include "slam/mapping/atomic_file.h"
 #include "slam/mapping/map_io.h"
 
@@ -38,7 +40,8 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void write_truth(const OutputFolder& out, const ExactMap& exact, const sim::TruthWorld& world) {
+void write_truth(const OutputFolder& out, const ExactMap& exact, const sim::TruthWorld& world,
+                 const MapBand& band) {
   slam::write_map(out.file("truth_map"), exact.map);
   // As it is scored: a free cell that a ray crossed, an occupied one whose face was seen.
   slam::OccupancyMap visible{exact.map.geometry, {}};
@@ -46,7 +49,7 @@ void write_truth(const OutputFolder& out, const ExactMap& exact, const sim::Trut
     visible.value.push_back(exact.sight[i] > (exact.map.value[i] > 0 ? 1 : 0) ? 1.0F : 0.0F);
   }
   slam::write_map(out.file("visible"), visible);
-  write_outline_json(out.file("outline.json"), scene_outline(world));
+  write_outline_json(out.file("outline.json"), scene_outline(world, band));
 }
 
 /// Of its file, or of what is generated.
@@ -106,7 +109,7 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   const Clock::time_point start = Clock::now();
   const sim::Scenario scenario = sim::realized(job.scenario);
   const slam::SlamOptions options = slam_options(scenario);
-  const sim::HeadModel head = sim::load_head(scenario.head.model);
+  const sim::HeadModel head = sim::carried_head(scenario);
   const sim::World world = sim::World::load(scenario);
   SimulatedSource source(scenario, world, head, job.frames);
   OutputFolder out(job.folder);
@@ -130,7 +133,9 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
                      .track_error_px = errors.track_px.rmse().value_or(kUnknown),
                      .position_error_m = kUnknown,
                      .memory_mb = memory_mb(),
-                     .faults = truth.faults});
+                     .faults = truth.faults,
+                     .exposure_s = truth.setting ? truth.setting->time_s : kUnknown,
+                     .gain_db = truth.setting ? truth.setting->gain_db : kUnknown});
     figures.observe(frame, result, core);
   };
   RunOutcome outcome{scenario.name, scenario.seed, job.folder, 0, {}, {}, job.oracles};
@@ -153,13 +158,17 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   // write it down
   slam::write_file_atomically(out.file("scenario.yaml"),
                               [&](std::ostream& text) { text << sim::to_yaml(scenario); });
+  if (head.raw) {
+    slam::write_file_atomically(out.file("calibration.yaml"),
+                                [&](std::ostream& text) { text << sim::calibration_yaml(head); });
+  }
   write_motion(out, source, judged);
   write_core_files(out, core);
-  write_truth(out, judge.exact_map(), scene.standing());
+  write_truth(out, judge.exact_map(), scene.standing(), scene.band());
   write_frames_csv(out.file("frames.csv"), core_run.frames, notes);
   write_metrics_json(out.file("metrics.json"), outcome.metrics);
   figures.write(out.file("figures"));
-  cv::imwrite(out.file("figures/preview.png"), preview_picture(scene.standing(), source.simulation()));
+  cv::imwrite(out.file("figures/preview.png"), preview_picture(scene.standing(), scene.band(), source.simulation()));
   RunHeader header = header_of(scenario, outcome, source.renderer_info());
   header.frames = static_cast<int64_t>(core_run.frames.size());
   write_run_json(out.file("run.json"), header);

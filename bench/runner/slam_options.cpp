@@ -1,6 +1,38 @@
 #include "bench/runner/slam_options.h"
 
+#include <string_view>
+
 namespace groundloop::bench {
+namespace {
+
+/// Multiplies every length among options: names end in their units, lengths in `_m`.
+class LengthScaler {
+ public:
+  explicit LengthScaler(double factor) : factor_(factor) {}
+
+  template <class T>
+  void operator()(const char* key, T& value, const Field& = {}) {
+    if constexpr (Visitable<T>) {
+      value.visit(*this);
+    } else if constexpr (std::is_same_v<T, double>) {
+      if (std::string_view(key).ends_with("_m")) value *= factor_;
+    } else if constexpr (std::is_same_v<T, std::vector<double>>) {
+      if (!std::string_view(key).ends_with("_m")) return;
+      for (double& length_m : value) length_m *= factor_;
+    }
+  }
+
+ private:
+  double factor_;
+};
+
+void scale_lengths(slam::SlamOptions& options, double factor) {
+  if (factor == 1) return;
+  LengthScaler scaler(factor);
+  options.visit(scaler);
+}
+
+}  // namespace
 
 slam::SlamOptions slam_options(const sim::Scenario& scenario) {
   std::vector<Problem> problems;
@@ -15,6 +47,7 @@ slam::SlamOptions slam_options(const sim::Scenario& scenario) {
     }
   }
   options.seed = scenario.seed;
+  scale_lengths(options, scenario.slam.scale);
   for (const auto& [key, value] : scenario.slam.set) {
     const auto line = scenario.slam.set_lines.find(key);
     const bool in_file = line != scenario.slam.set_lines.end() && line->second > 0;
@@ -22,6 +55,7 @@ slam::SlamOptions slam_options(const sim::Scenario& scenario) {
                problems);
   }
   if (!problems.empty()) throw InputError(problems);
+  scale_lengths(options, scenario.scale);
   return options;
 }
 

@@ -8,8 +8,8 @@
 
 namespace groundloop::bench {
 
-/// Options of the core: the scenario's preset with its `set` on top; the scenario's seed goes into the
-/// core's.
+/// Options of the core: the scenario's preset, its lengths times `slam.scale`, with its `set` on top; then
+/// all lengths times the scenario's scale. The scenario's seed goes into the core's.
 /// @throws InputError naming file, line, option, value and what was wanted
 slam::SlamOptions slam_options(const sim::Scenario& scenario);
 

@@ -50,6 +50,8 @@ void remember_lines(const YAML::Node& root, Scenario& scenario) {
   for (size_t i = 0; i < scenario.plan.segments.size(); ++i) {
     scenario.plan.segments[i].line = line_of(segments[i]);
   }
+  remember_lines(root["plan"]["poses"], scenario.plan.poses);
+  if (scenario.plan.path) scenario.plan.path->line = line_of(root["plan"]["path"]);
   remember_lines(root["faults"], scenario.faults);
   remember_lines(root["people"], scenario.people);
   remember_lines(root["moves"], scenario.moves);
@@ -146,6 +148,22 @@ void resolve_world(Scenario& scenario, const YAML::Node& node, const std::vector
           scenario, overrides, "an MJCF file", problems);
 }
 
+/// What only a robot on wheels can do, or suffer.
+void check_for_arm(const Scenario& scenario, ConfigReader& reader) {
+  if (scenario.plan.feedback != Feedback::kPlan) {
+    reader.problem("plan", "feedback other than plan", "an arm, which follows its plan");
+  }
+  if (!scenario.people.empty()) reader.problem("people", "given", "none about an arm");
+  if (!scenario.moves.empty()) reader.problem("moves", "given", "none about an arm");
+  const bool of_wheels = std::any_of(scenario.faults.begin(), scenario.faults.end(), [](const Fault& f) {
+    return f.wheel_slip || f.kidnap || f.encoder || f.trigger_offset || f.knock;
+  });
+  if (of_wheels) {
+    reader.problem("faults", "wheel_slip, kidnap, encoder, trigger_offset or knock",
+                   "faults that one camera on an arm can suffer: those of images and their transport");
+  }
+}
+
 /// In the file's order, the command line's last; what both a file and an override complain of once.
 std::vector<Problem> tidied(std::vector<Problem> problems) {
   const auto place = [](const Problem& problem) {
@@ -176,7 +194,13 @@ void Segment::check(ConfigReader& reader) const {
 
 void Plan::check(ConfigReader& reader) const {
   if (generate && !segments.empty()) reader.problem("generate", "either segments or generate, not both");
-  if (!generate && segments.empty()) {
+  if (is_for_arm()) {
+    if (!poses.empty() && path) reader.problem("path", "either poses or path, not both");
+    if (generate || !segments.empty()) {
+      reader.problem(poses.empty() ? "path" : "poses", "given beside a drive",
+                     "either segments, which a robot drives, or poses or path, which an arm follows");
+    }
+  } else if (!generate && segments.empty()) {
     if (reader.has("segments")) {
       reader.problem("segments", "at least one segment");
     } else {
@@ -200,6 +224,10 @@ void Expectations::check(ConfigReader& reader) const {
 }
 
 void Scenario::check(ConfigReader& reader) const {
+  if (plan.is_for_arm()) check_for_arm(*this, reader);
+  if (scale != 1 && !plan.is_for_arm()) {
+    reader.problem("scale", "1, unless an arm carries the camera (plan.poses or plan.path)");
+  }
   const bool kidnapped =
       std::any_of(faults.begin(), faults.end(), [](const Fault& f) { return f.kidnap.has_value(); });
   if (kidnapped && plan.feedback == Feedback::kSlam) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/scenario/camera_plan.h"
 #include "sim/scenario/fault.h"
 #include "sim/scenario/metric_names.h"
 #include "sim/scenario/recipe.h"
@@ -84,6 +85,7 @@ struct RobotChoice {
   StartPose start;
   DriveErrors drive;
   OdometryModel odometry;
+  ArmErrors arm;
 
   template <class Archive>
   void visit(Archive& a) {
@@ -91,6 +93,7 @@ struct RobotChoice {
     a("start", start, {.doc = "where the robot starts, in the world frame"});
     a("drive", drive, {.doc = "how the robot differs from what it takes itself for"});
     a("odometry", odometry, {.doc = "errors of the wheel odometry"});
+    a("arm", arm, {.doc = "errors of an arm"});
   }
 };
 
@@ -154,6 +157,11 @@ struct Plan {
   double look_speed_degps = 20;       ///< of a head that turns
   std::vector<Segment> segments;
   std::optional<PlanRecipe> generate;  ///< in place of segments, until they are made (sim/generate)
+  std::vector<CameraPose> poses;       ///< of a camera that an arm carries, in place of segments
+  std::optional<CameraPath> path;      ///< in place of poses
+
+  /// An arm carries the camera; else a robot drives.
+  bool is_for_arm() const { return !poses.empty() || path.has_value(); }
 
   template <class Archive>
   void visit(Archive& a) {
@@ -164,6 +172,8 @@ struct Plan {
     a("look_speed_degps", look_speed_degps, {.min = 0.1, .max = 300, .doc = "of a head that turns"});
     a("segments", segments, {.doc = "driven one after the other"});
     a("generate", generate, {.doc = "straights and arcs through the world, drawn from a seed"});
+    a("poses", poses, {.doc = "stops of a camera that an arm carries, one after the other"});
+    a("path", path, {.doc = "the same, along a line"});
   }
   void check(ConfigReader& reader) const;
 };
@@ -185,6 +195,7 @@ struct RenderChoice {
 
 struct SlamChoice {
   std::string preset = "default";
+  double scale = 1;                        ///< of the scene, relative to the room it stands for
   std::map<std::string, std::string> set;  ///< dotted option -> value, applied on top of the preset
 
   int preset_line = 0;                   ///< in the scenario file, for messages; 0 from a default or `--set`
@@ -193,6 +204,10 @@ struct SlamChoice {
   template <class Archive>
   void visit(Archive& a) {
     a("preset", preset, {.doc = "paper (the faithful method) or default (the best this project has)"});
+    a("scale", scale,
+      {.min = 0.01,
+       .max = 100,
+       .doc = "of the scene, relative to the room it stands for: on the core's lengths"});
     a("set", set, {.doc = "dotted options of the core and their values, on top of the preset"});
   }
 };
@@ -243,6 +258,7 @@ struct Scenario {
   RenderChoice render;
   SlamChoice slam;
   uint64_t seed = 1;
+  double scale = 1;  ///< of every length of an arm's scenario, the models' included
   Expectations expect;
 
   std::string file;  ///< where it was read from; not part of the file
@@ -265,6 +281,8 @@ struct Scenario {
     a("render", render, {.doc = "how images are made"});
     a("slam", slam);
     a("seed", seed, {.doc = "of every noise"});
+    a("scale", scale,
+      {.min = 0.01, .max = 100, .doc = "every length of an arm's scenario times this, the models' included"});
     a("expect", expect, {.doc = "bounds of metrics: what must come out"});
   }
   void check(ConfigReader& reader) const;

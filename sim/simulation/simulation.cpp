@@ -12,6 +12,7 @@
 #include "sim/robot/pan_tilt.h"
 #include "sim/robot/planned_path.h"
 #include "sim/robot/wheel_angles.h"
+#include "sim/simulation/arm_simulation.h"
 #include "sim/simulation/collision_focus.h"
 #include "sim/simulation/kidnapping.h"
 #include "sim/simulation/path_check.h"
@@ -316,8 +317,13 @@ std::optional<Exposure> Simulation::Wheeled::advance() {
 }
 
 Simulation::Simulation(const World& world, const HeadModel& head, const Scenario& scenario,
-                       PoseFeedback core_pose)
-    : carrier_(std::make_unique<Wheeled>(world, head, scenario, std::move(core_pose))) {}
+                       PoseFeedback core_pose) {
+  if (scenario.plan.is_for_arm()) {
+    carrier_ = std::make_unique<ArmSimulation>(world, head, scenario);
+  } else {
+    carrier_ = std::make_unique<Wheeled>(world, head, scenario, std::move(core_pose));
+  }
+}
 Simulation::~Simulation() = default;
 
 std::optional<Exposure> Simulation::advance() { return carrier_->advance(); }

@@ -288,6 +288,20 @@ void check_names(const MjcfElement& world, const MjcfElement& robot, std::vector
   }
 }
 
+/// Bodies of the world that carry joints without having one: bases of arms.
+std::vector<MjcfElement*> standing_bodies(MjcfElement& robot) {
+  std::vector<MjcfElement*> found;
+  for (MjcfElement& section : robot.children) {
+    if (section.tag != "worldbody") continue;
+    for (MjcfElement& body : section.children) {
+      const bool own_joint = std::any_of(body.children.begin(), body.children.end(),
+                                         [](const MjcfElement& child) { return child.tag == "joint"; });
+      if (body.tag == "body" && !own_joint && has_joints(body)) found.push_back(&body);
+    }
+  }
+  return found;
+}
+
 }  // namespace
 
 MjcfElement compose_mjcf(MjcfElement world, MjcfElement robot, std::vector<MjcfElement> people) {
@@ -326,10 +340,13 @@ std::string robot_root_body(MjcfElement& robot) {
       found.push_back(&element);
     }
   });
+  if (found.empty()) found = standing_bodies(robot);
   if (found.size() != 1) {
     const MjcfElement& where = found.empty() ? robot : *found.back();
-    throw InputError(where.problem(fmt::format("{} bodies with a free joint", found.size()),
-                                   "one body with a free joint, the robot's root"));
+    throw InputError(
+        where.problem(fmt::format("{} bodies with a free joint", found.size()),
+                      "one body with a free joint, the robot's root, or one that stands and carries "
+                      "joints, the base of an arm"));
   }
   if (found.front()->find("name") == nullptr) found.front()->set("name", "robot");
   return found.front()->get("name");

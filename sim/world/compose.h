@@ -18,7 +18,8 @@ namespace groundloop::sim {
 /// @throws InputError: a name used in both files, or settings that cannot both hold
 MjcfElement compose_mjcf(MjcfElement world, MjcfElement robot, std::vector<MjcfElement> people = {});
 
-/// The body of a robot file that has a free joint; gets the name "robot" when it has none.
+/// The body of a robot file that has a free joint, or, when none has, the one that stands in the world and
+/// carries joints: the base of an arm. Gets the name "robot" when it has none.
 /// @throws InputError when there is none, or more than one
 std::string robot_root_body(MjcfElement& robot);
 

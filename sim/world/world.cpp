@@ -16,6 +16,7 @@
 #include "sim/world/generate/generate.h"
 #include "sim/world/mjcf.h"
 #include "sim/world/people.h"
+#include "sim/world/scale.h"
 
 namespace groundloop::sim {
 namespace {
@@ -94,6 +95,20 @@ void strip_textures(MjcfElement& root) {
 World::World(ModelPtr model, int robot_body, std::vector<int> people, const StartPose& start)
     : model_(std::move(model)), robot_body_(robot_body), people_(std::move(people)), start_(start) {
   prepare_for_cameras(*model_);
+  put_down_base();
+}
+
+/// A base stands where the scenario starts: in the model itself, since no joint moves it.
+void World::put_down_base() {
+  if (robot_body_ < 0 || model_->body_jntnum[robot_body_] > 0) return;
+  mjtNum* pos = model_->body_pos + 3 * robot_body_;
+  mjtNum* quat = model_->body_quat + 4 * robot_body_;
+  const double half_yaw_rad = start_.yaw_deg * std::numbers::pi / 360;
+  const mjtNum yaw[4] = {std::cos(half_yaw_rad), 0, 0, std::sin(half_yaw_rad)};
+  const mjtNum there[3] = {start_.x_m, start_.y_m, 0};
+  const mjtNum pos_file[3] = {pos[0], pos[1], pos[2]};
+  const mjtNum quat_file[4] = {quat[0], quat[1], quat[2], quat[3]};
+  mju_mulPose(pos, quat, there, yaw, pos_file, quat_file);
 }
 
 std::optional<std::string> generated_text(const Scenario& scenario) {
@@ -124,7 +139,13 @@ World World::load(const Scenario& scenario, Looks looks) {
   const int robot_body = body_id(body);
   std::vector<int> people_bodies;
   for (const Person& person : scenario.people) people_bodies.push_back(body_id(person.name));
-  return World(std::move(model), robot_body, std::move(people_bodies), scenario.robot.start);
+  StartPose start = scenario.robot.start;
+  if (scenario.scale != 1) {
+    scale_model(*model, scenario.scale);
+    start.x_m *= scenario.scale;
+    start.y_m *= scenario.scale;
+  }
+  return World(std::move(model), robot_body, std::move(people_bodies), start);
 }
 
 World World::load_file(const std::string& world_file) {
@@ -142,7 +163,7 @@ bool World::is_person_geom(int geom) const {
 
 World::DataPtr World::make_data() const {
   DataPtr data(mj_makeData(model_.get()), mj_deleteData);
-  if (robot_body_ >= 0) {
+  if (robot_body_ >= 0 && model_->body_jntnum[robot_body_] > 0) {
     mjtNum* q = data->qpos + model_->jnt_qposadr[model_->body_jntadr[robot_body_]];
     q[0] = start_.x_m;
     q[1] = start_.y_m;

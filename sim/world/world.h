@@ -26,9 +26,11 @@ enum class Looks {
   kNone,  ///< no textures: the same geometry, loaded many times faster
 };
 
-/// A world file and a robot file composed into one MuJoCo model. Constant after loading.
+/// A world file and a robot file composed into one MuJoCo model, at the scenario's scale. Constant after
+/// loading.
 /// The robot's root body is the body of the robot file that has a free joint; its frame is `body`
-/// (x forward, y left, z up, origin on the floor below the axle).
+/// (x forward, y left, z up, origin on the floor below the axle). An arm's root body is its base, which
+/// stands.
 class World {
  public:
   /// @throws InputError naming file, line and element (a missing texture, XML that MuJoCo rejects, no robot
@@ -49,6 +51,7 @@ class World {
 
  private:
   World(ModelPtr model, int robot_body, std::vector<int> people, const StartPose& start);
+  void put_down_base();
   ModelPtr model_;
   int robot_body_;
   std::vector<int> people_;  ///< root bodies

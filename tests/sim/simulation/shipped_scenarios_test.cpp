@@ -53,6 +53,7 @@ TEST(ShippedScenarios, TheHeadDoesNotSeeItsRobot) {
   int rays = 0;
   for (const auto& entry : std::filesystem::directory_iterator("models/heads")) {
     SCOPED_TRACE(entry.path().string());
+    if (entry.path().stem().string().starts_with("xc55")) continue;  // an arm's
     const slam::StereoRig rig = load_head(entry.path().string()).rig();
     const mjtNum* q = state->qpos + model.jnt_qposadr[model.body_jntadr[world.robot_body()]];
     slam::Pose T_world_body = slam::Pose::Identity();
