@@ -70,18 +70,18 @@ void write_frames_csv(const std::string& file, const std::vector<slam::FrameResu
     for (size_t s = 0; s < slam::kStageCount; ++s) {
       out << "," << slam::name_of(static_cast<slam::Stage>(s)) << "_ms";
     }
-    out << ",total_ms,render_ms,memory_mb,disparity_error_px,track_error_px,position_error_m,faults,state_"
-           "hash\n";
+    out << ",total_ms,render_ms,memory_mb,disparity_error_px,track_error_px,position_error_m,exposure_s,"
+           "gain_db,faults,state_hash\n";
     for (size_t i = 0; i < frames.size(); ++i) {
       const slam::FrameResult& f = frames[i];
       fmt::print(out, "{},{},{},{},{:d},{},{},{}", f.index, f.stamp_ns, slam::name_of(f.status), f.segment,
                  f.is_key_frame, f.features_tracked, f.inliers, f.residual_px);
       for (const double ms : f.stage_ms) fmt::print(out, ",{:.3f}", ms);
       const FrameNotes& n = notes[i];
-      fmt::print(out, ",{:.3f},{},{:.1f},{},{},{},{},{:016x}\n", f.total_ms,
+      fmt::print(out, ",{:.3f},{},{:.1f},{},{},{},{},{},{},{:016x}\n", f.total_ms,
                  std::isfinite(n.render_ms) ? fmt::format("{:.3f}", n.render_ms) : "", n.memory_mb,
-                 cell(n.disparity_error_px), cell(n.track_error_px), cell(n.position_error_m), n.faults,
-                 f.state_hash);
+                 cell(n.disparity_error_px), cell(n.track_error_px), cell(n.position_error_m),
+                 cell(n.exposure_s), cell(n.gain_db), n.faults, f.state_hash);
     }
   });
 }

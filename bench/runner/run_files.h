@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,10 @@ struct FrameNotes {
   double disparity_error_px;
   double track_error_px;
   double position_error_m;
-  double memory_mb;  ///< resident after this frame
+  double memory_mb;    ///< resident after this frame
   std::string faults;  ///< kinds active since the frame before, as "drop+blur"; empty when all was well
+  double exposure_s = std::numeric_limits<double>::quiet_NaN();  ///< of a raw head's left camera
+  double gain_db = std::numeric_limits<double>::quiet_NaN();
 };
 
 // Writers of the run folder's files (README.md lists them). bench/report/run_folder.h reads them. All numbers

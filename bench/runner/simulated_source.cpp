@@ -8,13 +8,25 @@
 #include "sim/faults/image_faults.h"
 
 namespace groundloop::bench {
+namespace {
+
+/// What the core is told of the head: ideal, or as it will be rectified.
+slam::StereoRig told_rig(const sim::HeadModel& head, const std::optional<RawImages>& raw) {
+  if (!raw) return head.rig();
+  slam::StereoRig rig = raw->rectifier().rig();
+  rig.T_body_left = head.rig().T_body_left * raw->rectifier().T_raw_left();
+  return rig;
+}
+
+}  // namespace
 
 SimulatedSource::SimulatedSource(const sim::Scenario& scenario, const sim::World& world,
                                  const sim::HeadModel& head, std::optional<int64_t> frames)
     : scenario_(scenario),
       world_(world),
       head_(head),
-      rig_(head.rig()),
+      raw_(head.raw ? std::make_optional<RawImages>(head, scenario) : std::nullopt),
+      rig_(told_rig(head, raw_)),
       simulation_(world, head, scenario, [this](int64_t exposure) { return pose_of_exposure(exposure); }),
       arrivals_(sim::arrivals(scenario.faults, scenario.seed, simulation_.exposures(), head.period_ns())),
       size_(std::min(frames.value_or(INT64_MAX), static_cast<int64_t>(arrivals_.size()))),
@@ -26,7 +38,9 @@ SimulatedSource::SimulatedSource(const sim::Scenario& scenario, const sim::World
 
 void SimulatedSource::steer_by(const slam::FrameResult& result) {
   const bool known = result.status != slam::TrackingStatus::kLost;
-  poses_.put(known ? std::optional(result.T_map_left) : std::nullopt);
+  slam::Pose T_map_camera = result.T_map_left;
+  if (raw_) T_map_camera = T_map_camera * raw_->rectifier().T_raw_left().inverse();
+  poses_.put(known ? std::optional(T_map_camera) : std::nullopt);
 }
 
 std::optional<slam::Pose> SimulatedSource::pose_of_exposure(int64_t exposure) {
@@ -43,11 +57,16 @@ std::optional<sim::Exposure> SimulatedSource::expose() {
   return simulation_.advance();
 }
 
-std::optional<slam::StereoFrame> SimulatedSource::make_pair(sim::Renderer& renderer) {
+std::optional<SimulatedSource::Rendered> SimulatedSource::make_pair(sim::Renderer& renderer) {
   if (made_ == size_) return std::nullopt;
   const sim::Arrival& arrival = arrivals_[static_cast<size_t>(made_)];
-  slam::StereoFrame frame;
+  Rendered pair;
+  slam::StereoFrame& frame = pair.frame;
   frame.index = made_++;
+
+  const auto rectified = [this](const slam::Pose& T_world_left) {
+    return raw_ ? T_world_left * raw_->rectifier().T_raw_left() : T_world_left;
+  };
 
   // the exposures since the last pair, and the motion over all of them
   slam::Pose T_previous_left = slam::Pose::Identity();
@@ -61,22 +80,35 @@ std::optional<slam::StereoFrame> SimulatedSource::make_pair(sim::Renderer& rende
   const sim::Exposure& now = recent_.back();
   const sim::Exposure& seen = recent_.front();
   frame.stamp_ns = now.stamp_ns;
-  if (frame.index > 0) frame.T_previous_left = T_previous_left;
+  if (frame.index > 0) {
+    frame.T_previous_left = T_previous_left;
+    if (raw_) frame.T_previous_left = raw_->rectifier().T_raw_left().inverse() * rectified(T_previous_left);
+  }
 
   const auto start = std::chrono::steady_clock::now();
-  render(seen, renderer, frame);
+  if (raw_) {
+    pair.light = raw_->light(seen, renderer);
+  } else {
+    render(seen, renderer, frame);
+  }
   const std::chrono::duration<double, std::milli> render_ms = std::chrono::steady_clock::now() - start;
 
   const int64_t before_ns = frame.index > 0 ? truth_[static_cast<size_t>(frame.index) - 1].stamp_ns : -1;
   const std::string faults = sim::fault_label(scenario_.faults, before_ns, now.stamp_ns);
-  truth_[static_cast<size_t>(frame.index)] = {now.stamp_ns,    now.T_world_body,  now.T_world_left,
-                                              now.T_odom_body, seen.T_world_left, seen.stamp_ns,
-                                              faults,          render_ms.count()};
-  return frame;
+  FrameTruth& truth = truth_[static_cast<size_t>(frame.index)];
+  truth.stamp_ns = now.stamp_ns;
+  truth.T_world_body = now.T_world_body;
+  truth.T_world_left = rectified(now.T_world_left);
+  truth.T_odom_body = now.T_odom_body;
+  truth.T_world_seen = rectified(seen.T_world_left);
+  truth.seen_ns = seen.stamp_ns;
+  truth.faults = faults;
+  truth.render_ms = render_ms.count();
+  return pair;
 }
 
 void SimulatedSource::render(const sim::Exposure& exposure, sim::Renderer& renderer,
-                             slam::StereoFrame& frame) {
+                             slam::StereoFrame& frame) const {
   renderer.update_scene(*exposure.state, exposure.lights);
   renderer.render_grey({head_.focal_px, head_.cx_px, head_.cy_px, exposure.T_world_left}, frame.left);
   if (exposure.state_right != exposure.state) renderer.update_scene(*exposure.state_right, exposure.lights);
@@ -94,21 +126,38 @@ void SimulatedSource::spoil(slam::StereoFrame& frame) const {
   if (arrival.swapped) cv::swap(frame.left, frame.right);
 }
 
+/// From the light on the sensors to the rectified pair.
+void SimulatedSource::take_raw(Rendered& pair) {
+  const sim::Arrival& arrival = arrivals_[static_cast<size_t>(pair.frame.index)];
+  const sim::ExposureSetting setting = raw_->setting(arrival.images_of);
+  cv::Mat left, right;
+  raw_->read_out(pair.light, arrival.images_of, setting, left, right);
+  raw_->observe(left);
+  raw_->transfer(left, right, arrival.swapped, pair.frame);
+  truth_[static_cast<size_t>(pair.frame.index)].setting = setting;
+}
+
 std::optional<slam::StereoFrame> SimulatedSource::next() {
   if (!rendered_) {
     exposures_.emplace([this] { return expose(); });
     // A renderer lives and dies in the thread that uses it.
     rendered_.emplace([this, renderer = std::shared_ptr<sim::Renderer>()]() mutable {
       if (!renderer) {
-        renderer = std::make_shared<sim::Renderer>(world_, head_.width_px, head_.height_px, scenario_.render);
+        const cv::Size size = raw_ ? raw_->view().size : cv::Size(head_.width_px, head_.height_px);
+        renderer = std::make_shared<sim::Renderer>(world_, size.width, size.height, scenario_.render);
         renderer_info_ = renderer->info();
       }
       return make_pair(*renderer);
     });
   }
-  std::optional<slam::StereoFrame> frame = rendered_->next();
-  if (frame) spoil(*frame);
-  return frame;
+  std::optional<Rendered> pair = rendered_->next();
+  if (!pair) return std::nullopt;
+  if (raw_) {
+    take_raw(*pair);
+  } else {
+    spoil(pair->frame);
+  }
+  return std::move(pair->frame);
 }
 
 }  // namespace groundloop::bench

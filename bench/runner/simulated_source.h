@@ -8,6 +8,7 @@
 
 #include "bench/runner/ahead.h"
 #include "bench/runner/pose_channel.h"
+#include "bench/runner/raw_images.h"
 #include "sim/faults/arrivals.h"
 #include "sim/head/head.h"
 #include "sim/render/renderer.h"
@@ -30,11 +31,15 @@ struct FrameTruth {
   int64_t seen_ns = 0;         ///< when that was
   std::string faults;          ///< kinds active since the pair before, as "drop+blur" (sim/faults/arrivals.h)
   double render_ms = 0;        ///< both images, read back
+  std::optional<sim::ExposureSetting> setting;  ///< of a raw head's left camera
 };
 
 /// The simulator as a source of stereo pairs. Physics and rendering run ahead, each in a thread of its own;
 /// image faults and sensor noise are added in next(). The truth of each pair goes past the core, into
 /// truth().
+///
+/// The pairs of a raw head are rectified as the core is told; truth, planned motion and the poses to steer by
+/// are those of the rectified left camera.
 ///
 /// A pair that does not arrive (faults: drop, late) leaves no gap in the index, only in the stamps; the
 /// planned motion told with the next pair covers the whole gap, since the robot kept count of it.
@@ -66,13 +71,20 @@ class SimulatedSource : public slam::StereoSource {
  private:
   std::optional<slam::Pose> pose_of_exposure(int64_t exposure);
   std::optional<sim::Exposure> expose();
-  std::optional<slam::StereoFrame> make_pair(sim::Renderer& renderer);
-  void render(const sim::Exposure& exposure, sim::Renderer& renderer, slam::StereoFrame& frame);
+  /// A pair on its way from the renderer: an ideal head's images, or the light on a raw one's sensors.
+  struct Rendered {
+    slam::StereoFrame frame;
+    SensorLight light;
+  };
+  std::optional<Rendered> make_pair(sim::Renderer& renderer);
+  void render(const sim::Exposure& exposure, sim::Renderer& renderer, slam::StereoFrame& frame) const;
   void spoil(slam::StereoFrame& frame) const;
+  void take_raw(Rendered& pair);
 
   const sim::Scenario& scenario_;
   const sim::World& world_;
   const sim::HeadModel& head_;
+  std::optional<RawImages> raw_;
   const slam::StereoRig rig_;
   PoseChannel poses_;
   sim::Simulation simulation_;
@@ -82,9 +94,9 @@ class SimulatedSource : public slam::StereoSource {
   std::vector<FrameTruth> truth_;
   int64_t exposed_ = 0;
   int64_t made_ = 0;
-  std::deque<sim::Exposure> recent_;                  ///< whose images may still arrive
-  std::optional<Ahead<sim::Exposure>> exposures_;     ///< started by the first next()
-  std::optional<Ahead<slam::StereoFrame>> rendered_;  ///< takes from exposures_, so it ends first
+  std::deque<sim::Exposure> recent_;               ///< whose images may still arrive
+  std::optional<Ahead<sim::Exposure>> exposures_;  ///< started by the first next()
+  std::optional<Ahead<Rendered>> rendered_;        ///< takes from exposures_, so it ends first
 };
 
 }  // namespace groundloop::bench

@@ -18,6 +18,8 @@ struct StereoFrame {
   /// Planned motion since the previous frame: pose of this left camera in the previous left camera, from the
   /// plan or from odometry, never from the truth. None: the core assumes constant velocity.
   std::optional<Pose> T_previous_left;
+
+  double rectification_ms = 0;  ///< time it took to make the pair of raw images; 0: it came rectified
 };
 
 }  // namespace groundloop::slam
