@@ -95,19 +95,18 @@ void AreaTable::add(const Footprint& footprint, int channel) {
   channel_.push_back(static_cast<uint8_t>(channel));
 }
 
-/// The largest weight takes what rounding leaves, so that they always add up to the whole.
+/// Rounds the running sum, so that the weights add up to the whole.
 void AreaTable::round_weights(size_t first_tap, const std::vector<double>& areas) {
   double whole = 0;
   for (const double area : areas) whole += area;
-  int sum = 0;
-  size_t largest = 0;
-  const auto weight = [&](size_t i) -> int16_t& { return taps_[first_tap + i / kWidth].weight[i % kWidth]; };
+  double sum = 0;
+  long given = 0;
   for (size_t i = 0; i < areas.size(); ++i) {
-    weight(i) = static_cast<int16_t>(std::lround(areas[i] / whole * kOne));
-    sum += weight(i);
-    if (areas[i] > areas[largest]) largest = i;
+    sum += areas[i];
+    const long up_to_here = std::lround(sum / whole * kOne);
+    taps_[first_tap + i / kWidth].weight[i % kWidth] = static_cast<int16_t>(up_to_here - given);
+    given = up_to_here;
   }
-  weight(largest) = static_cast<int16_t>(weight(largest) + kOne - sum);
 }
 
 void AreaTable::apply(const cv::Mat& image, const std::vector<float>& factor, cv::Mat& output) const {
