@@ -9,6 +9,8 @@ namespace groundloop::sim {
 namespace {
 
 constexpr double kQuantisation_dn2 = 1.0 / 12;
+/// With less noise than this, rounding is no noise of its own that adds 1/12 (EMVA 1288 wants 0.24).
+constexpr double kResolved_dn2 = 0.3;
 
 struct FieldStatistics {
   double mean_dn = 0;
@@ -34,8 +36,8 @@ FieldStatistics statistics_of(const FlatField& field) {
   statistics.mean_dn = mean[0];
   statistics.temporal_dn2 = cv::mean(variance)[0];
   statistics.spatial_dn2 = std::max(0.0, deviation[0] * deviation[0] - statistics.temporal_dn2 / frames);
-  const double floor_dn2 = std::max(statistics.temporal_dn2, kQuantisation_dn2);
-  statistics.weight = (frames - 1) / (floor_dn2 * floor_dn2);
+  const double noise_dn2 = statistics.temporal_dn2;
+  statistics.weight = noise_dn2 < kResolved_dn2 ? 0 : (frames - 1) / (noise_dn2 * noise_dn2);
   return statistics;
 }
 

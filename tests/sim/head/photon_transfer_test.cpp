@@ -71,6 +71,7 @@ TEST_P(PhotonTransferOf, FindsTheSensorAgain) {
 INSTANTIATE_TEST_SUITE_P(PhotonTransfer, PhotonTransferOf,
                          testing::Values(Case{20318, 0, 0.0085, 12, 24, 0.8, 30000},
                                          Case{7, 1, 0.05, 0, 20, 1.5, 4600},
+                                         Case{20318, 1, 0.0085, 12, 12, 0.8, 30000},
                                          Case{991, 0, 0.2, 0, 4, 2.5, 1200},
                                          Case{12345678, 1, 0.02, 6, 15, 0.6, 12000}));
 
