@@ -66,6 +66,37 @@ TEST(Simulation, DrivesAnArcAndTurnsOnTheSpot) {
   }
 }
 
+/// The moments of an exposure are where the drive is at their times; the right camera's are its own.
+TEST(Simulation, AHeadThatTakesTimeSeesTheSceneGoBy) {
+  const Scenario scenario = on_the_floor("  speed_mps: 0.3\n  segments: [{straight_m: 1.2}]\n");
+  const World world = World::load(scenario);
+  HeadModel head = load_head(scenario.head.model);
+  head.raw.emplace();
+  head.raw->exposure.time_s = 0.01;
+  head.raw->exposure.readout_s = 0.03;
+  head.raw->exposure.sub_frames = 5;
+  head.raw->exposure.right_trigger_offset_s = 0.008;
+  head.raw->right_pose.pan_deg = 1;
+  Simulation simulation(world, head, scenario);
+  for (int i = 0; i < 15; ++i) simulation.advance();
+  const Exposure exposure = simulation.advance().value();
+  ASSERT_EQ(exposure.left_sub_frames.size(), 5U);
+  ASSERT_EQ(exposure.right_sub_frames.size(), 5U);
+  for (size_t k = 0; k < 5; ++k) {
+    const double t_s = head.sub_frame_times_s()[k];
+    const slam::Pose T_left_sub =
+        exposure.T_world_left.inverse() * exposure.left_sub_frames[k].T_world_camera;
+    EXPECT_NEAR(T_left_sub.translation().z(), 0.3 * t_s, 1e-4) << k;
+    EXPECT_NEAR(exposure.left_sub_frames[k].state->time, 1e-9 * static_cast<double>(exposure.stamp_ns) + t_s,
+                1e-9);
+    const slam::Pose T_left_right =
+        exposure.left_sub_frames[k].T_world_camera.inverse() * exposure.right_sub_frames[k].T_world_camera;
+    EXPECT_NEAR((T_left_right.translation() - head.T_left_right().translation()).z(), 0.3 * 0.008, 1e-4) << k;
+    EXPECT_TRUE(T_left_right.linear().isApprox(head.T_left_right().linear(), 1e-3));
+  }
+  EXPECT_TRUE(exposure.left_sub_frames[2].T_world_camera.isApprox(exposure.T_world_left, 1e-12));
+}
+
 TEST(Simulation, StandsOnTheFloorAndStaysLevel) {
   const Drive drive(on_the_floor(
       "  speed_mps: 0.3\n  segments: [{straight_m: 1}, {arc: {radius_m: 0.5, angle_deg: 60}}]\n"));
