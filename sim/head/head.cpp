@@ -23,9 +23,6 @@ HeadModel load_head(const std::string& file) {
 
 void HeadModel::check(ConfigReader& reader) const {
   if (!raw) return;
-  for (const char* key : {"focal_px", "cx_px", "cy_px", "noise"}) {
-    if (reader.has(key)) reader.problem(key, "nothing beside raw, which has lenses and a sensor of its own");
-  }
   if (raw->sensor.mosaic != Mosaic::kNone && (width_px % 2 != 0 || height_px % 2 != 0)) {
     reader.problem("raw", "an even width and height behind a colour mosaic");
   }

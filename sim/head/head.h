@@ -69,12 +69,13 @@ struct HeadModel {
     a("height_px", height_px, {.min = 32, .max = 4096});
     a("rate_hz", rate_hz, {.min = 0.1, .max = 120});
     a("baseline_m", baseline_m, {.min = 0.001, .max = 2});
+    a("mount", mount);
+    a("raw", raw);
+    if (raw) return;  // in place of what follows
     a("focal_px", focal_px, {.min = 10, .max = 20000});
     a("cx_px", cx_px, {.min = -1000, .max = 6000});
     a("cy_px", cy_px, {.min = -1000, .max = 6000});
-    a("mount", mount);
     a("noise", noise);
-    a("raw", raw);
   }
   void check(ConfigReader& reader) const;
 

@@ -85,6 +85,24 @@ TEST(ImageFaults, DirtStaysWhereItIsAndIsOnOneLens) {
   EXPECT_LT(darkened, 5 * 3.15 * 18 * 18);
 }
 
+/// Light has no upper end, and what is told in delivered pixels is larger on a sensor that is binned.
+TEST(ImageFaults, LightOnASensorIsStruckAlike) {
+  Fault dirty = from(0, 1), bright = from(0, 1);
+  dirty.dirt = DirtFault{FaultCamera::kLeft, 5, 12, 0.7};
+  bright.exposure = ExposureFault{4};
+  cv::Mat light(120, 160, CV_32FC1, cv::Scalar(100));
+  apply_image_faults({dirty}, 1, 0, 0, light);
+  cv::Mat grey;
+  light.convertTo(grey, CV_8U);
+  EXPECT_LE(cv::norm(grey, struck({dirty}, 0, 0), cv::NORM_INF), 1);
+  cv::Mat fine(240, 320, CV_32FC1, cv::Scalar(100));
+  apply_image_faults({dirty}, 1, 0, 0, fine, 2);
+  EXPECT_NEAR(cv::countNonZero(fine < 99) / 4.0, cv::countNonZero(light < 99), 20);
+  cv::Mat even(4, 4, CV_32FC1, cv::Scalar(100));
+  apply_image_faults({bright}, 1, 0, 0, even);
+  EXPECT_EQ(even.at<float>(2, 2), 400);
+}
+
 TEST(ImageFaults, DirtOfBothLensesDiffers) {
   Fault fault = from(0, 1);
   fault.dirt = DirtFault{FaultCamera::kBoth, 5, 12, 0.7};

@@ -41,6 +41,62 @@ TEST(Head, PanTurnsLeftAndTiltUp) {
   EXPECT_TRUE(head.rig().T_body_left.linear().col(2).isApprox(Eigen::Vector3d::UnitX(), 1e-12));
 }
 
+/// Problems of a head file's text.
+std::vector<std::string> problems_of(const std::string& text) {
+  const std::string file = (std::filesystem::temp_directory_path() / "groundloop_raw_head.yaml").string();
+  std::ofstream(file) << text;
+  std::vector<std::string> lines;
+  try {
+    load_head(file);
+  } catch (const InputError& error) {
+    for (Problem problem : error.problems()) {
+      problem.file = "head.yaml";
+      lines.push_back(problem.text());
+    }
+  }
+  std::filesystem::remove(file);
+  return lines;
+}
+
+TEST(Head, ARawHeadIsWrittenAndReadAgain) {
+  const HeadModel head = load_head("models/heads/sth_mdcs_raw.yaml");
+  ASSERT_TRUE(head.raw);
+  EXPECT_EQ(head.raw->sensor.reduction, Reduction::kDecimation);
+  EXPECT_EQ(problems_of(to_yaml(head)), std::vector<std::string>{});
+}
+
+TEST(Head, ARawHeadHasNoIdealOne) {
+  using testing::ElementsAre;
+  EXPECT_THAT(problems_of("name: a\nfocal_px: 500\nraw: {}\n"),
+              ElementsAre(testing::StartsWith("head.yaml:2: focal_px: unknown key")));
+  EXPECT_THAT(problems_of("name: a\nrate_hz: 30\nraw: {exposure: {time_s: 0.02, readout_s: 0.02}}\n"),
+              ElementsAre(testing::HasSubstr(
+                  "0.04 s for one image: wanted exposure and read-out within one period")));
+  EXPECT_THAT(problems_of("name: a\nraw: {optics: {left: {k1: -2}}}\n"),
+              ElementsAre(testing::HasSubstr("a distortion that folds over inside the image")));
+  EXPECT_THAT(problems_of("name: a\nwidth_px: 321\nraw: {sensor: {mosaic: rggb}}\n"),
+              ElementsAre(testing::HasSubstr("wanted an even width and height behind a colour mosaic")));
+  EXPECT_THAT(
+      problems_of("name: a\nraw: {optics: {supersampling: 4, left: {fx_px: 20000}}}\n"),
+      ElementsAre(testing::HasSubstr("wanted lenses and a supersampling that need at most 8192 x 8192")));
+  EXPECT_THAT(problems_of("name: a\nraw: {exposure: {auto: {min_time_s: 0.02, max_time_s: 0.01}}}\n"),
+              ElementsAre(testing::HasSubstr("min_time_s: 0.02: wanted a time not above max_time_s")));
+}
+
+TEST(Head, TheRightCameraSitsWhereItIsSaidTo) {
+  HeadModel head;
+  head.raw.emplace();
+  head.raw->right_pose = {.down_m = 0.002, .forward_m = 0.003, .pan_deg = 2};
+  const slam::Pose T = head.T_left_right();
+  EXPECT_TRUE(T.translation().isApprox(Eigen::Vector3d(0.088, 0.002, 0.003), 1e-12));
+  EXPECT_NEAR(T.linear()(0, 2), -std::sin(2 * M_PI / 180), 1e-12) << "it looks to the left";
+  head.raw->right_pose = {.tilt_deg = 3};
+  EXPECT_NEAR(head.T_left_right().linear()(1, 2), -std::sin(3 * M_PI / 180), 1e-12) << "up";
+  head.raw->right_pose = {.roll_deg = 4};
+  EXPECT_NEAR(head.T_left_right().linear()(1, 0), std::sin(4 * M_PI / 180), 1e-12)
+      << "its right side is down";
+}
+
 TEST(Head, BadFileNamesEveryProblem) {
   const std::string file = (std::filesystem::temp_directory_path() / "groundloop_bad_head.yaml").string();
   std::ofstream(file) << "name: bad\nbaseline_m: -1\nfocal: 500\n";
