@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "slam/source/image_file.h"
 #include "slam/source/text.h"
@@ -122,7 +123,13 @@ KittiSource::KittiSource(const std::string& directory, const SourceOptions& opti
       problems.insert(problems.end(), error.problems().begin(), error.problems().end());
     }
   };
+  const bool raw = !options.calibration_files.empty();
+  StereoCalibration calibration;
   collect([&] {
+    if (raw) {
+      calibration = read_stereo_calibration(options.calibration_files);
+      return;
+    }
     const std::string file = directory + "/calib.txt";
     const size_t before = problems.size();
     const auto projections = read_projections(file, problems);
@@ -153,6 +160,7 @@ KittiSource::KittiSource(const std::string& directory, const SourceOptions& opti
   }
   const cv::Mat first = read_grey_image(left_files_.front());
   rig_.width_px = first.cols, rig_.height_px = first.rows;
+  if (raw) rig_ = rectifier_.emplace(calibration, first.size()).rig();
   rig_.T_body_left = StereoRig::level_camera({0, 0, options.camera_height_m});
 }
 
@@ -163,6 +171,10 @@ std::optional<StereoFrame> KittiSource::next() {
   frame.stamp_ns = stamps_ns_[next_];
   frame.left = read_grey_image(left_files_[next_], rig_.width_px, rig_.height_px);
   frame.right = read_grey_image(right_files_[next_], rig_.width_px, rig_.height_px);
+  if (rectifier_) {
+    const cv::Mat raw_left = std::exchange(frame.left, {}), raw_right = std::exchange(frame.right, {});
+    rectifier_->rectify(raw_left, raw_right, frame.left, frame.right);
+  }
   ++next_;
   return frame;
 }

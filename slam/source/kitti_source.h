@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "slam/rectify/rectifier.h"
 #include "slam/source/source_options.h"
 #include "slam/source/stereo_source.h"
 
@@ -12,7 +13,8 @@ namespace groundloop::slam {
 
 /// A recorded sequence in the layout of the KITTI odometry benchmark: DIR/image_0 and image_1 (rectified PNG,
 /// NNNNNN.png, in order of their names), times.txt (seconds, one a pair, rising unless any_order),
-/// calib.txt (3x4 projections P0 and P1).
+/// calib.txt (3x4 projections P0 and P1). With SourceOptions::calibration_files the images are raw, and there
+/// need be no calib.txt.
 class KittiSource : public StereoSource {
  public:
   /// Reads the calibration, the times and the names of the images; the images themselves when asked for.
@@ -30,6 +32,7 @@ class KittiSource : public StereoSource {
   StereoRig rig_;
   std::vector<int64_t> stamps_ns_;
   std::vector<std::string> left_files_, right_files_;
+  std::optional<Rectifier> rectifier_;  ///< of raw images
   int64_t next_ = 0;
 };
 
