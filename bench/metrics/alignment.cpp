@@ -5,6 +5,28 @@
 #include <limits>
 
 namespace groundloop::bench {
+namespace {
+
+constexpr double kStraight = 0.02;  ///< spread across the line, relative to that along it
+
+/// Root mean square spread of points along their three principal axes, largest first [m].
+Eigen::Vector3d spread_m(const Eigen::Matrix3Xd& p) {
+  const Eigen::Matrix3Xd centred = p.colwise() - p.rowwise().mean();
+  const Eigen::Matrix3d covariance = centred * centred.transpose() / static_cast<double>(p.cols());
+  return covariance.jacobiSvd().singularValues().cwiseSqrt();
+}
+
+/// Points at the ends of each pose's three axes, 3 x 3 N [m].
+Eigen::Matrix3Xd axis_tips(const slam::Trajectory& poses, double length_m) {
+  Eigen::Matrix3Xd tips(3, 3 * poses.size());
+  for (size_t i = 0; i < poses.size(); ++i) {
+    tips.middleCols<3>(3 * static_cast<Eigen::Index>(i)) =
+        (length_m * poses[i].T.linear()).colwise() + poses[i].T.translation();
+  }
+  return tips;
+}
+
+}  // namespace
 
 Eigen::Matrix3Xd positions_of(const slam::Trajectory& poses) {
   Eigen::Matrix3Xd p(3, poses.size());
@@ -52,6 +74,16 @@ Alignment align(PosePairs& pairs, AlignMode mode, std::optional<size_t> first_po
     pose.T = applied.T_truth_map * pose.T;
   }
   return applied;
+}
+
+slam::Pose map_placement(const PosePairs& pairs) {
+  if (pairs.size() == 0) return slam::Pose::Identity();
+  const Eigen::Matrix3Xd p_truth = positions_of(pairs.truth), p_map = positions_of(pairs.estimate);
+  const Eigen::Vector3d spread = spread_m(p_truth);
+  if (spread[1] > kStraight * spread[0]) return align_points(p_truth, p_map, false).T_truth_map;
+  const double length_m = spread[0] > 0 ? spread[0] : 1;
+  return align_points(axis_tips(pairs.truth, length_m), axis_tips(pairs.estimate, length_m), false)
+      .T_truth_map;
 }
 
 }  // namespace groundloop::bench

@@ -37,6 +37,10 @@ enum class AlignMode {
 /// @return what was applied
 Alignment align(PosePairs& pairs, AlignMode mode, std::optional<size_t> first_poses = std::nullopt);
 
+/// How the estimate's map lies in the world: as align() with kSe3 says, but of a path along a line, whose
+/// positions leave a rotation open, the orientations decide.
+slam::Pose map_placement(const PosePairs& pairs);
+
 /// Positions of the poses, 3 x N [m].
 Eigen::Matrix3Xd positions_of(const slam::Trajectory& poses);
 

@@ -67,7 +67,8 @@ RunJudgement RunJudge::judge(const std::vector<slam::FrameResult>& frames) const
   run.metrics.merge(score.metrics());
   run.links = std::move(score.links);
 
-  run.T_world_map = align(pairs, AlignMode::kSe3).T_truth_map;
+  run.T_world_map = map_placement(pairs);
+  align(pairs, AlignMode::kSe3);
   for (size_t i = 0; i < pairs.size(); ++i) {
     run.position_error_m.push_back(
         (pairs.truth[i].T.translation() - pairs.estimate[i].T.translation()).norm());

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -42,14 +43,28 @@ std::optional<double> within(double angle_rad, double near_rad, double low_rad, 
   return std::nullopt;
 }
 
+/// Why there is no solution: of all postures the one that comes nearest.
+class Shortfall {
+ public:
+  void note(double short_m, std::string why) {
+    if (short_m < least_m_) least_m_ = short_m, reason_ = std::move(why);
+  }
+  const std::string& reason() const { return reason_; }
+
+ private:
+  double least_m_ = std::numeric_limits<double>::infinity();
+  std::string reason_;
+};
+
 /// Angles of joint 1 that let the wrist reach the flange: the wrist is d4 beside the plane of upper arm and
 /// forearm.
 std::vector<double> shoulder_angles(const ArmGeometry& arm, const slam::Pose& T_base_flange,
-                                    std::string& reason) {
+                                    Shortfall& shortfall) {
   const Vector3d p_base_5 = T_base_flange * Vector3d(0, 0, -arm.d6_m);
   const double across_m = std::hypot(p_base_5.x(), p_base_5.y());
   if (across_m <= arm.d4_m) {
-    reason = fmt::format("{:.1f} mm too near to the axis of the base", 1e3 * (arm.d4_m - across_m));
+    const double short_m = arm.d4_m - across_m;
+    shortfall.note(short_m, fmt::format("{:.1f} mm too near to the axis of the base", 1e3 * short_m));
     return {};
   }
   const double direction = std::atan2(p_base_5.y(), p_base_5.x()) + kQuarterTurn;
@@ -75,8 +90,8 @@ class PlanarArm {
     wrist_ = T_1_4.translation().head<2>();
   }
 
-  /// Both bends of the elbow; none out of reach, with the reason.
-  std::vector<double> elbow_angles(std::string& reason) const {
+  /// Both bends of the elbow; none out of reach.
+  std::vector<double> elbow_angles(Shortfall& shortfall) const {
     const double a2 = arm_.a2_m, a3 = arm_.a3_m, distance_m = wrist_.norm();
     const auto at_elbow = [&](double q3) {
       return std::sqrt(a2 * a2 + a3 * a3 + 2 * a2 * a3 * std::cos(q3));
@@ -84,11 +99,13 @@ class PlanarArm {
     const double farthest_m = at_elbow(least_elbow_rad_),
                  nearest_m = at_elbow(std::numbers::pi - least_elbow_rad_);
     if (distance_m > farthest_m) {
-      reason = fmt::format("{:.1f} mm beyond the arm's reach", 1e3 * (distance_m - farthest_m));
+      const double short_m = distance_m - farthest_m;
+      shortfall.note(short_m, fmt::format("{:.1f} mm beyond the arm's reach", 1e3 * short_m));
       return {};
     }
     if (distance_m < nearest_m) {
-      reason = fmt::format("{:.1f} mm nearer than the arm can fold", 1e3 * (nearest_m - distance_m));
+      const double short_m = nearest_m - distance_m;
+      shortfall.note(short_m, fmt::format("{:.1f} mm nearer than the arm can fold", 1e3 * short_m));
       return {};
     }
     const double q3 = std::acos((distance_m * distance_m - a2 * a2 - a3 * a3) / (2 * a2 * a3));
@@ -118,13 +135,14 @@ slam::Pose forward_kinematics(const ArmGeometry& arm, const JointAngles& q) {
 InverseKinematics inverse_kinematics(const ArmGeometry& arm, const JointLimits& limits,
                                      const slam::Pose& T_base_flange, const JointAngles& near) {
   InverseKinematics answer;
+  Shortfall shortfall;
   const auto add = [&](const JointAngles& q) {
     JointAngles allowed;
     for (int joint = 0; joint < 6; ++joint) {
       const auto angle = within(q[joint], near[joint], limits.low[joint], limits.high[joint]);
       if (!angle) {
-        answer.reason = fmt::format("joint {} would have to turn to {:.1f} deg, beyond its limits", joint + 1,
-                                    in_turn_near(q[joint], 0) * 180 / std::numbers::pi);
+        shortfall.note(0, fmt::format("joint {} would have to turn to {:.1f} deg, beyond its limits",
+                                      joint + 1, in_turn_near(q[joint], 0) * 180 / std::numbers::pi));
         return;
       }
       allowed[joint] = *angle;
@@ -134,7 +152,7 @@ InverseKinematics inverse_kinematics(const ArmGeometry& arm, const JointLimits& 
 
   const Eigen::Matrix3d R = T_base_flange.linear();
   const Vector3d p = T_base_flange.translation();
-  for (const double q1 : shoulder_angles(arm, T_base_flange, answer.reason)) {
+  for (const double q1 : shoulder_angles(arm, T_base_flange, shortfall)) {
     const double beside_m = p.x() * std::sin(q1) - p.y() * std::cos(q1);
     const double cos_q5 = std::clamp((beside_m - arm.d4_m) / arm.d6_m, -1.0, 1.0);
     for (const double q5 : {std::acos(cos_q5), -std::acos(cos_q5)}) {
@@ -144,7 +162,7 @@ InverseKinematics inverse_kinematics(const ArmGeometry& arm, const JointLimits& 
       const slam::Pose T_1_4 =
           link(q1, arm.d1_m, 0, kQuarterTurn).inverse() * T_base_flange * T_4_flange.inverse();
       const PlanarArm planar(arm, limits.least_elbow_rad, T_1_4);
-      for (const double q3 : planar.elbow_angles(answer.reason)) {
+      for (const double q3 : planar.elbow_angles(shortfall)) {
         const double q2 = planar.shoulder_lift(q3);
         JointAngles q;
         q << q1, q2, q3, planar.turn_rad() - q2 - q3, q5, q6;
@@ -152,7 +170,7 @@ InverseKinematics inverse_kinematics(const ArmGeometry& arm, const JointLimits& 
       }
     }
   }
-  if (!answer.solutions.empty()) answer.reason.clear();
+  if (answer.solutions.empty()) answer.reason = shortfall.reason();
   return answer;
 }
 

@@ -43,7 +43,7 @@ slam::Pose forward_kinematics(const ArmGeometry& arm, const JointAngles& q);
 struct InverseKinematics {
   std::vector<JointAngles>
       solutions;       ///< up to eight: shoulder left or right, wrist up or down, elbow likewise
-  std::string reason;  ///< why there are none
+  std::string reason;  ///< why there are none: what the posture lacks that comes nearest
 };
 
 /// All solutions within the limits, in a fixed order, each angle in the turn that is nearest to `near`

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "sim/arm/arm_clearance.h"
+#include "sim/arm/arm_servo.h"
 
 namespace groundloop::sim {
 namespace {
@@ -45,7 +46,8 @@ class Planner {
         arm_(arm),
         clearance_(world, arm),
         margin_m_(kArmClearance_m * scenario.scale),
-        baseline_m_(baseline_m) {
+        baseline_m_(baseline_m),
+        period_s_(static_cast<double>(period_ns) * 1e-9) {
     plan_.stops = camera_stops(scenario, period_ns);
   }
 
@@ -85,7 +87,7 @@ class Planner {
     for (const JointAngles& q_left : left.solutions) {
       const InverseKinematics right = solve(stop, kRight, q_left);
       if (right.solutions.empty()) {
-        reason = right.reason;
+        reason = "for the right image " + right.reason;
         continue;
       }
       const Posture posture = {q_left, nearest(right.solutions, q_left)};
@@ -151,8 +153,27 @@ class Planner {
   /// Joints run straight from image to image; no point of the arm goes farther between two looks than twice
   /// the clearance.
   void check_way_to(size_t stop) {
-    if (stop > 0) check_way(plan_.q[stop - 1][kRight], plan_.q[stop][kLeft], plan_.stops[stop]);
+    if (stop > 0) {
+      check_way(plan_.q[stop - 1][kRight], plan_.q[stop][kLeft], plan_.stops[stop]);
+      check_time(stop);
+    }
     check_way(plan_.q[stop][kLeft], plan_.q[stop][kRight], plan_.stops[stop]);
+  }
+
+  /// Two motions, and coming to rest after each, must fit between two pairs.
+  void check_time(size_t stop) {
+    const CameraStop &from = plan_.stops[stop - 1], &to = plan_.stops[stop];
+    const slam::Pose T_world_right = ArmPlan::T_world_camera(from, kRight, baseline_m_);
+    const double way_m = (to.T_world_left.translation() - T_world_right.translation()).norm();
+    const double speed_mps = scenario_.scale * scenario_.plan.speed_mps;
+    const double moving_s =
+        ArmServo::duration_s(arm_, plan_.q[stop][kLeft] - plan_.q[stop - 1][kRight], way_m / speed_mps) +
+        ArmServo::duration_s(arm_, plan_.q[stop][kRight] - plan_.q[stop][kLeft], baseline_m_ / speed_mps);
+    if (moving_s + 2 * kUsualRest_s < period_s_) return;
+    tell(to, fmt::format("the arm moves for {:.2f} s to be there twice", moving_s),
+         fmt::format(
+             "{:.2f} s at most: the head's time between pairs, less {} s to come to rest after each motion",
+             period_s_ - 2 * kUsualRest_s, kUsualRest_s));
   }
 
   void check_way(const JointAngles& from, const JointAngles& to, const CameraStop& stop) {
@@ -174,6 +195,7 @@ class Planner {
   const ArmClearance clearance_;
   const double margin_m_;
   const double baseline_m_;
+  const double period_s_;
   ArmPlan plan_;
   std::vector<std::vector<Posture>> postures_;  ///< by stop
   std::string in_trouble_;                      ///< what was wanted of the stop before, in vain

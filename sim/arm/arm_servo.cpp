@@ -34,14 +34,16 @@ ArmServo::ArmServo(const World& world, const ArmModel& arm, const JointAngles& s
   mj_forward(&model_, state_.get());
 }
 
-bool ArmServo::move_to(const JointAngles& q, double longest_s) {
-  const JointAngles from = q_, way = q - q_;
+double ArmServo::duration_s(const ArmModel& arm, const JointAngles& way, double least_s) {
   const double widest_rad = way.cwiseAbs().maxCoeff();
-  const double duration_s =
-      std::max({Progress::kTopRate * longest_s, Progress::kTopRate * widest_rad / arm_.joint_speed_radps,
-                std::sqrt(Progress::kTopAcceleration * widest_rad / arm_.joint_acceleration_radps2)});
+  return std::max({Progress::kTopRate * least_s, Progress::kTopRate * widest_rad / arm.joint_speed_radps,
+                   std::sqrt(Progress::kTopAcceleration * widest_rad / arm.joint_acceleration_radps2)});
+}
+
+bool ArmServo::move_to(const JointAngles& q, double least_s) {
+  const JointAngles from = q_, way = q - q_;
   const double step_s = model_.opt.timestep;
-  const auto steps = static_cast<int>(std::ceil(duration_s / step_s));
+  const auto steps = static_cast<int>(std::ceil(duration_s(arm_, way, least_s) / step_s));
   for (int i = 1; i <= steps; ++i) {
     const Progress progress(static_cast<double>(i) / steps);
     const double whole_s = steps * step_s;

@@ -14,6 +14,9 @@ inline constexpr double kStill_radps = 2e-5;
 /// Longest time it may take for that after a motion.
 inline constexpr double kSettleLimit_s = 1;
 
+/// What it usually takes.
+inline constexpr double kUsualRest_s = 0.25;
+
 /// Moves an arm's joints by its position servos, in MuJoCo's physics. The servos are fed forward with
 /// gravity, inertia and damping, as an arm's own controller does, so that they lag and sag by nothing that
 /// stays. Nothing collides: the plan was checked.
@@ -22,10 +25,13 @@ class ArmServo {
   /// Starts at rest. @param world, arm  must outlive this object
   ArmServo(const World& world, const ArmModel& arm, const JointAngles& start);
 
-  /// Runs all joints together to q, from rest to rest, and waits until they stand.
-  /// @param longest_s  do not run faster than in this time, for a limit on the hand's speed
+  /// Time from rest to rest for joints that turn by `way`.
+  /// @param least_s  do not run faster than in this time, on average, for a limit on the hand's speed
+  static double duration_s(const ArmModel& arm, const JointAngles& way, double least_s);
+
+  /// Runs all joints together to q in that time, and waits until they stand.
   /// @return false when they do not stand within kSettleLimit_s after the motion
-  bool move_to(const JointAngles& q, double longest_s);
+  bool move_to(const JointAngles& q, double least_s);
 
   double time_s() const { return state_->time; }
   const mjData& state() const { return *state_; }

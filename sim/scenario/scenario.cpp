@@ -257,6 +257,10 @@ Scenario load_scenario(const std::string& file, const std::vector<Override>& ove
   if (problems.empty()) remember_lines(root, scenario);
 
   for (const Override& override_ : overrides) apply_override(override_, scenario, problems);
+  if (!overrides.empty() && problems.empty()) {  // what they broke between keys of the whole
+    ConfigReader reader(root, file, "", &problems);
+    scenario.check(reader);
+  }
 
   resolve_world(scenario, root["world"], overrides, problems);
   resolve(scenario.robot.model, "robot.model", root["robot"]["model"], scenario, overrides, "an MJCF file",

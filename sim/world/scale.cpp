@@ -42,8 +42,6 @@ void scale_lights(mjModel& model, double factor) {
 }  // namespace
 
 void scale_model(mjModel& model, double factor) {
-  multiply(&model.stat.extent, 1, factor);
-  multiply(model.stat.center, 3, factor);
   multiply(model.body_pos, 3 * model.nbody, factor);
   multiply(model.body_ipos, 3 * model.nbody, factor);
   multiply(model.body_mass, model.nbody, 1 / (factor * factor));
@@ -59,7 +57,10 @@ void scale_model(mjModel& model, double factor) {
   scale_materials(model, factor);
   scale_lights(model, factor);
   const std::unique_ptr<mjData, decltype(&mj_deleteData)> data(mj_makeData(&model), mj_deleteData);
+  const mjStatistic before = model.stat;
   mj_setConst(&model, data.get());
+  model.stat.extent = factor * before.extent;  // as the file may have set them
+  for (int i = 0; i < 3; ++i) model.stat.center[i] = factor * before.center[i];
 }
 
 }  // namespace groundloop::sim

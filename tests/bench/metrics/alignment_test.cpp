@@ -122,5 +122,30 @@ TEST(Align, NoneChangesNothing) {
   EXPECT_TRUE(pairs.estimate[5].T.isApprox(before, 0));
 }
 
+TEST(MapPlacement, OfACurvedPathIsTheAlignment) {
+  PosePairs pairs = circle_pairs(1);
+  pairs.estimate[4].T = moved(0.1, 0.02, 0) * pairs.estimate[4].T;
+  const slam::Pose placement = map_placement(pairs);
+  EXPECT_TRUE(placement.isApprox(align(pairs, AlignMode::kSe3).T_truth_map, 0));
+}
+
+TEST(MapPlacement, OfAStraightPathIsDecidedByTheOrientations) {
+  PosePairs pairs;
+  for (int i = 0; i < 20; ++i) {
+    const slam::Pose T_world_left = kT * moved(0.1 * i, 0, 0) * turned(20, {0, 0, 1});
+    const double side_m = i % 2 == 0 ? 1e-5 : -1e-5;  // nothing that positions could tell a rotation by
+    pairs.truth.push_back({i, T_world_left});
+    pairs.estimate.push_back({i, moved(0, side_m, 0) * moved(1, 2, 3) * T_world_left});
+  }
+  EXPECT_LT(slam::se3_log(map_placement(pairs) * moved(1, 2, 3)).norm(), 1e-4);
+}
+
+TEST(MapPlacement, OfOnePoseLaysThatPose) {
+  PosePairs pairs;
+  pairs.truth.push_back({0, kT});
+  pairs.estimate.push_back({0, turned(70, {0, 1, 0}) * moved(1, 0, 0)});
+  EXPECT_TRUE(map_placement(pairs).isApprox(kT * pairs.estimate[0].T.inverse(), 1e-12));
+}
+
 }  // namespace
 }  // namespace groundloop::bench
