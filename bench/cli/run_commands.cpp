@@ -112,6 +112,10 @@ void add_replay_command(CLI::App& app, CommandAction& action) {
   command->add_option("--frames", options->frames, "only the first N pairs")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
+  command->add_option("--calibration", options->calibration,
+                      "the images are raw: stereo calibration in OpenCV's YAML, in one file or two")
+      ->expected(1, 2)
+      ->type_name("FILE");
   command->add_option("--truth", options->truth, "trajectory to judge by; default: the sequence's own")
       ->type_name("FILE");
   command->add_option("--out", options->out, "run folder; default runs/NAME")->type_name("DIR");

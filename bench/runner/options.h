@@ -58,6 +58,7 @@ struct ReplayOptions {
   std::vector<sim::Override>
       set;                        ///< options of the core (`tracking.max_features=400`), on top of the preset
   std::optional<int64_t> frames;  ///< only the first so many pairs
+  std::vector<std::string> calibration;  ///< files of a stereo calibration; the images are raw then
   std::string truth;              ///< trajectory file to judge by; empty: the sequence's own, if it has one
   std::string out;                ///< run folder; empty: runs/NAME of the sequence's folder
   bool json = false;              ///< the answer as JSON on stdout

@@ -40,8 +40,9 @@ std::unique_ptr<slam::StereoSource> open_source(const ReplayOptions& options) {
     const bool euroc = fs::exists(options.dir + "/mav0") || fs::exists(options.dir + "/cam0");
     format = euroc ? "euroc" : "kitti";
   }
-  if (format == "kitti") return std::make_unique<slam::KittiSource>(options.dir);
-  if (format == "euroc") return std::make_unique<slam::EurocSource>(options.dir);
+  const slam::SourceOptions how{.calibration_files = options.calibration};
+  if (format == "kitti") return std::make_unique<slam::KittiSource>(options.dir, how);
+  if (format == "euroc") return std::make_unique<slam::EurocSource>(options.dir, how);
   throw InputError(Problem{"--format", 0, "", options.format, "kitti or euroc"});
 }
 
