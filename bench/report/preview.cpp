@@ -30,6 +30,21 @@ void draw_arrows(Canvas& canvas, const PlanView& view, const std::vector<PlanPos
   }
 }
 
+/// Where the camera looks, on a path that it does not follow with its eyes.
+void draw_looks(Canvas& canvas, const PlanView& view, const std::vector<PlanPose>& path) {
+  constexpr double kSpacing_px = 40, kLength_px = 18, kAside_rad = 0.2;
+  double since_px = kSpacing_px;
+  for (size_t i = 1; i < path.size(); ++i) {
+    const cv::Point2d step = view(path[i].x_m, path[i].y_m) - view(path[i - 1].x_m, path[i - 1].y_m);
+    since_px += cv::norm(step);
+    const double way_rad = std::atan2(-step.y, step.x);  // y of a picture points down
+    const double aside_rad = std::abs(std::remainder(path[i].yaw_rad - way_rad, 2 * M_PI));
+    if (since_px < kSpacing_px || cv::norm(step) == 0 || aside_rad < kAside_rad) continue;
+    since_px = 0;
+    draw_heading(canvas, view, path[i], kLength_px, kPath);
+  }
+}
+
 }  // namespace
 
 cv::Mat draw_preview(const std::vector<Footprint>& outline, const std::vector<PlanPose>& path,
@@ -52,6 +67,7 @@ cv::Mat draw_preview(const std::vector<Footprint>& outline, const std::vector<Pl
   canvas.polyline(points, palette::kPaper, 7);
   canvas.polyline(points, kPath, 3);
   draw_arrows(canvas, view, path);
+  draw_looks(canvas, view, path);
   if (!path.empty()) draw_place(canvas, view, path.back(), "end", palette::kEnd, true);
   const cv::Point2d at = view(start.x_m, start.y_m);
   canvas.line(at, at + cv::Point2d(std::cos(start.yaw_rad), -std::sin(start.yaw_rad)) * 34, palette::kStart,

@@ -10,6 +10,7 @@
 
 #include "bench/report/figures.h"
 #include "bench/report/html.h"
+#include "bench/report/plate.h"
 #include "bench/report/report_style.h"
 #include "bench/report/report_tables.h"
 #include "bench/report/run_folder.h"
@@ -28,6 +29,7 @@ namespace fs = std::filesystem;
 // MB.
 constexpr size_t kPhotoBytes = 600'000;
 constexpr size_t kTopViewBytes = 1'000'000;
+constexpr size_t kPlateBytes = 700'000;
 constexpr size_t kPlanBytes = 300'000;
 
 std::string note(const std::string& text) { return "<p class=\"note\">" + text + "</p>"; }
@@ -191,6 +193,27 @@ std::string scene_section(const RunFolder& run) {
                 "Model of the scene and planned trajectory.", "(Paper: Fig. 5.)");
 }
 
+/// The five figures of the paper's simulated run, after those of this run are drawn; nothing when one is
+/// missing.
+std::string plate_section(const RunFolder& run) {
+  const cv::Mat left = left_by_run(run, "left.png"), disparity = left_by_run(run, "disparity.png");
+  const cv::Mat top_view = left_by_run(run, "top_view.png"), scene = left_by_run(run, "preview.png");
+  const cv::Mat map = left_by_run(run, "map.png");
+  for (const cv::Mat& picture : {left, disparity, top_view, scene, map}) {
+    if (picture.empty()) return "";
+  }
+  const cv::Mat plate = draw_plate({{{"Fig. 1: left image", left}, {"Fig. 2: dense disparity", disparity}},
+                                    {{"Fig. 3: estimated trajectory and cloud", top_view},
+                                     {"Fig. 5: model of the scene, planned trajectory", scene}},
+                                    {{"Fig. 4: final occupancy map", map}}});
+  save_figure(run, "paper_figures.png", plate);
+  return "<section><h2>The paper's five figures</h2>" +
+         figure(picture(plate, kPlateBytes,
+                        "Left image, disparity, top view, scene with plan, and map on one plate"),
+                "Side by side.", "Numbered as in the paper, section 3.1; each again below, in full size.") +
+         "</section>\n";
+}
+
 // ---- plots over time
 
 std::string error_plots(const RunFolder& run, const TopView& view) {
@@ -293,10 +316,13 @@ std::string page(const RunFolder& run) {
           "</h1>";
   html += "<p class=\"summary\">" + escape_html(header.summary) + "</p>";
   html += experiment(header) + verdict(header) + tiles(run) + "</header>\n<main>";
-  html += "<section><h2>What the cameras saw</h2>" + frame_section(run) + "</section>\n";
-  html += "<section><h2>Trajectory and cloud</h2>" + top_view_section(run, place.view) + "</section>\n";
-  html += "<section><h2>Occupancy map</h2>" + map_section(run, place) + "</section>\n";
-  if (header.kind == "run") html += "<section><h2>Scene and plan</h2>" + scene_section(run) + "</section>\n";
+  std::string figures = "<section><h2>What the cameras saw</h2>" + frame_section(run) + "</section>\n" +
+                        "<section><h2>Trajectory and cloud</h2>" + top_view_section(run, place.view) +
+                        "</section>\n" + "<section><h2>Occupancy map</h2>" + map_section(run, place) +
+                        "</section>\n";
+  if (header.kind == "run")
+    figures += "<section><h2>Scene and plan</h2>" + scene_section(run) + "</section>\n";
+  html += plate_section(run) + figures;
   html += "<section><h2>Over time</h2>" + error_plots(run, place.view) + count_plot(run) + time_plot(run) +
           memory_plot(run) + "</section>\n";
   html += "<section><h2>Numbers</h2>" + expectation_table(header) + oracle_table(run.oracles) +

@@ -27,6 +27,7 @@ void FigureRecorder::observe(const slam::StereoFrame& frame, const slam::FrameRe
 
 void FigureRecorder::write(const std::string& folder) const {
   if (left_.empty()) return;
+  cv::imwrite(folder + "/left.png", left_);
   cv::imwrite(folder + "/left_tracked.png", draw_tracked(left_, features_, history_taken_));
   cv::imwrite(folder + "/disparity.png", draw_disparity(disparity_, rig_));
 }

@@ -17,7 +17,7 @@ class FigureRecorder {
 
   void observe(const slam::StereoFrame& frame, const slam::FrameResult& result, const slam::Pipeline& core);
 
-  /// Writes left_tracked.png and disparity.png; nothing when there was no key frame.
+  /// Writes left.png, left_tracked.png and disparity.png; nothing when there was no key frame.
   void write(const std::string& folder) const;
 
  private:

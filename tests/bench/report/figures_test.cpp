@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "bench/report/canvas.h"
+#include "bench/report/plate.h"
 #include "bench/report/preview.h"
 #include "tests/bench/report/synthetic_run.h"
 
@@ -213,6 +214,35 @@ TEST(DrawPreview, WorksFromAStartAlone) {
   EXPECT_EQ(draw_preview({}, {}, {1, 2, 0}).cols, 1600);
   const cv::Mat image = draw_preview(SyntheticRun::outline(), {{1, 1, 0}, {11, 1, 0}}, {1, 1, 0});
   EXPECT_GT(count_near(image, Colour(0x1f5fd0)), 1000);
+}
+
+/// Paths whose camera looks aside, as an arm's may, show where to.
+TEST(DrawPreview, ShowsWhereTheCameraLooksWhenThatIsNotTheWay) {
+  const auto path_looking = [](double yaw_rad) {
+    std::vector<PlanPose> path;
+    for (int i = 0; i <= 100; ++i) path.push_back({1 + 0.1 * i, 1, yaw_rad});
+    return draw_preview(SyntheticRun::outline(), path, path.front());
+  };
+  const int ahead = count_near(path_looking(0), Colour(0x1f5fd0)),
+            aside = count_near(path_looking(M_PI / 2), Colour(0x1f5fd0));
+  EXPECT_GT(aside, ahead + 500);
+}
+
+TEST(DrawPlate, PicturesOfARowHaveOneHeightAndFillTheWidth) {
+  const cv::Mat red(100, 200, CV_8UC3, cv::Scalar(0, 0, 255)), blue(300, 300, CV_8UC3, cv::Scalar(255, 0, 0));
+  const cv::Mat grey(50, 100, CV_8UC1, cv::Scalar(100));
+  const cv::Mat plate = draw_plate({{{"a", red}, {"b", blue}}, {{"c", grey}}});
+  EXPECT_EQ(plate.cols, 1600);
+  EXPECT_EQ(plate.type(), CV_8UC3);
+  // 1600 - 2 * 16 - 20 = 1548 for two pictures, twice and once as wide as high: 516 px high; less half a frame's line
+  EXPECT_NEAR(count_near(plate, Colour(0xff0000), 4), (1032 - 3) * (516 - 3), 800);
+  EXPECT_NEAR(count_near(plate, Colour(0x0000ff), 4), (516 - 3) * (516 - 3), 800);
+  EXPECT_NEAR(count_near(plate, Colour(0x646464), 2), (1568 - 3) * (784 - 3), 800);
+}
+
+TEST(DrawPlate, AMissingPictureIsAnError) {
+  EXPECT_THROW(draw_plate({{{"nothing", cv::Mat()}}}), std::invalid_argument);
+  EXPECT_THROW(draw_plate({{}}), std::invalid_argument);
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ TEST(Report, OfACompleteRunShowsEverything) {
   EXPECT_THAT(html, HasSubstr("Fell short:</strong> 1 of 2 expectations do not hold."));
   EXPECT_THAT(html, HasSubstr("trajectory.ate_rmse_m is 0.25\u00a0m, wanted at most 0.15\u00a0m"));
   EXPECT_LT(html.find("Fell short"), html.find("<img")) << "the verdict comes first";
-  EXPECT_EQ(count(html, "<img "), 6U);
+  EXPECT_EQ(count(html, "<img "), 7U);
   EXPECT_EQ(count(html, "<img "), count(html, "src=\"data:image/"));
   EXPECT_EQ(count(html, "<img "), count(html, " alt=\""));
   EXPECT_EQ(count(html, "<svg "), 5U);
@@ -50,7 +50,7 @@ TEST(Report, OfACompleteRunShowsEverything) {
   for (const char* network : {"http:", "https:", "<script", "<link", "@import"}) {
     EXPECT_THAT(html, Not(HasSubstr(network)));
   }
-  for (const char* made : {"top_view.png", "map.png", "map_difference.png"}) {
+  for (const char* made : {"top_view.png", "map.png", "map_difference.png", "paper_figures.png"}) {
     EXPECT_TRUE(std::filesystem::exists(folder.path() + "/figures/" + made)) << made;
   }
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path())) {

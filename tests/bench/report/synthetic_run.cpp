@@ -275,6 +275,7 @@ void SyntheticRun::write(const std::string& dir) {
     const Eigen::Vector3d p = T_world_left(i).translation();
     path.push_back({p.x(), p.y(), 0});
   }
+  cv::imwrite(dir + "/figures/left.png", left_image());
   cv::imwrite(dir + "/figures/left_tracked.png", draw_tracked(left_image(), features(), history()));
   cv::imwrite(dir + "/figures/disparity.png", draw_disparity(disparity(), rig()));
   cv::imwrite(dir + "/figures/preview.png", draw_preview(outline(), path, {8.5, 4, M_PI / 2}));
