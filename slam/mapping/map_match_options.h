@@ -19,6 +19,8 @@ struct MapMatchOptions {
   double max_second_score = 0.8;  ///< score of the second best peak, relative to the best
   double max_sigma_m = 0.04;      ///< position uncertainty of a match in its worst direction
   double max_sigma_deg = 0.4;     ///< heading uncertainty of a match
+  double level_sigma_m = 0.005;   ///< of the body's height over the floor, which is flat where the maps match
+  double level_sigma_deg = 0.2;   ///< of the body's roll and pitch there
 
   template <class Archive>
   void visit(Archive& a) {
@@ -35,6 +37,8 @@ struct MapMatchOptions {
     a("max_second_score", max_second_score, {.min = 0.5, .max = 1});
     a("max_sigma_m", max_sigma_m, {.min = 1e-4, .max = 10});
     a("max_sigma_deg", max_sigma_deg, {.min = 1e-3, .max = 180});
+    a("level_sigma_m", level_sigma_m, {.min = 1e-5, .max = 10});
+    a("level_sigma_deg", level_sigma_deg, {.min = 1e-3, .max = 180});
   }
 };
 

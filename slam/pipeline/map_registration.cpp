@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "slam/adjustment/relative_pose.h"
 #include "slam/mapping/mapper.h"
@@ -11,7 +12,9 @@
 namespace groundloop::slam {
 namespace {
 
-constexpr std::array<int, 3> kPlanar = {0, 1, 5};  // x, y and yaw of a perturbation (translation, rotation)
+// Of a perturbation (translation, rotation): x, y, yaw; and z, roll, pitch.
+constexpr std::array<int, 3> kPlanar = {0, 1, 5}, kUpright = {2, 3, 4};
+constexpr double kDegree = std::numbers::pi / 180;
 
 /// The frame under the body: level, at the map's height 0, heading as the body does.
 Pose level_under(const Pose& T_map_body) {
@@ -30,27 +33,22 @@ Eigen::Isometry2d planar(const Pose& T) {
   return flat;
 }
 
-Pose spatial(const Eigen::Isometry2d& flat) {
+/// The body at a place of the plane, standing on the floor as it did at another place: as high, its up axis
+/// the same.
+Pose standing_as(const Pose& T_map_body, const Eigen::Isometry2d& T_map_flat) {
+  const Eigen::Vector3d up_map = T_map_body.linear().col(2);
   Pose T = Pose::Identity();
-  T.linear().topLeftCorner<2, 2>() = flat.linear();
-  T.translation().head<2>() = flat.translation();
+  T.linear().topLeftCorner<2, 2>() = T_map_flat.linear();
+  T.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up_map) * T.linear();
+  T.translation() << T_map_flat.translation(), T_map_body.translation().z();
   return T;
 }
 
-Eigen::Matrix3d planar_part(const Matrix6d& covariance) {
+Eigen::Matrix3d part(const Matrix6d& covariance, const std::array<int, 3>& which) {
   Eigen::Matrix3d part;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) part(i, j) = covariance(kPlanar[i], kPlanar[j]);
+    for (int j = 0; j < 3; ++j) part(i, j) = covariance(which[i], which[j]);
   return part;
-}
-
-/// What the match says of the plane, and what was known before of the rest.
-Matrix6d with_planar_part(const Matrix6d& known, const Eigen::Matrix3d& matched) {
-  Matrix6d covariance = known;
-  for (const int i : kPlanar) covariance.row(i).setZero(), covariance.col(i).setZero();
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) covariance(kPlanar[i], kPlanar[j]) = matched(i, j);
-  return covariance;
 }
 
 double worst_sigma_m(const Eigen::Matrix3d& covariance) {
@@ -88,25 +86,49 @@ std::optional<MapSight> MapRegistration::match(PlaceMap& places) {
   if (old == nullptr) return std::nullopt;
   const std::optional<RelativeMotion> known = places.relative(old->key_frame, newest.key_frame);
   if (!known) return std::nullopt;
-  const Pose T_map_level = level_under(T_map_left * rig_.T_body_left.inverse());
-  const Pose T_level_left = T_map_level.inverse() * T_map_left;
-  const Matrix6d to_level = se3_adjoint(T_level_left);
-  const Matrix6d known_level = to_level * known->covariance * to_level.transpose();
-  const PlanarPose prior{planar(T_map_level), planar_part(known_level)};
+  const Matrix6d to_body = se3_adjoint(rig_.T_body_left);
+  const Matrix6d known_body = to_body * known->covariance * to_body.transpose();
+  const Pose T_map_body = T_map_left * rig_.T_body_left.inverse();
+  const Pose T_map_level = level_under(T_map_body);
+  const PlanarPose prior{planar(T_map_level), part(known_body, kPlanar)};
   if (worst_sigma_m(prior.covariance) < options_.min_prior_sigma_m) return std::nullopt;
 
   until_next_ = std::max(1, options_.key_frames / 3);
-  const OccupancyMap local = local_map(T_map_level, T_map_place);
-  const MapMatch match = match_maps(global_.grid().map(), local, prior, options_);
+  const MapMatch match =
+      match_maps(global_.grid().map(), local_map(T_map_level, T_map_place), prior, options_);
   if (!match.accepted) return std::nullopt;
-  const Pose T_map_matched =
-      spatial(match.pose.T_global_local * prior.T_global_local.inverse()) * T_map_left;
   const Pose T_map_old = T_map_place[old->place] * old->T_place_left;
-  const Matrix6d from_level = se3_adjoint(T_level_left.inverse());
-  const Matrix6d matched = with_planar_part(known_level, match.pose.covariance);
-  return MapSight{old->key_frame, renormalised(T_map_old.inverse() * T_map_matched),
-                  from_level * matched * from_level.transpose(),
+  const Pose T_map_matched = standing_as(T_map_old * rig_.T_body_left.inverse(), match.pose.T_global_local);
+  if (!on_one_floor(T_map_body.inverse() * T_map_matched, known_body)) return std::nullopt;
+  const Matrix6d from_body = se3_adjoint(rig_.T_body_left.inverse());
+  return MapSight{old->key_frame, renormalised(T_map_old.inverse() * T_map_matched * rig_.T_body_left),
+                  from_body * covariance_of(match) * from_body.transpose(),
                   static_cast<int>(match.overlap * match.agreement * match.cells)};
+}
+
+/// Whether what was known of height and tilt allows the correction: a drone, or a ramp, is on no common floor.
+bool MapRegistration::on_one_floor(const Pose& T_body_matched, const Matrix6d& known_body) const {
+  constexpr double kLeastLikely = 16.3;  // chi square of three degrees of freedom, one in a thousand
+  const Vector6d change = se3_log(T_body_matched);
+  const Eigen::Vector3d upright(change[kUpright[0]], change[kUpright[1]], change[kUpright[2]]);
+  const Eigen::Matrix3d C = part(known_body, kUpright) + Eigen::Matrix3d(upright_variance().asDiagonal());
+  return upright.dot(C.ldlt().solve(upright)) < kLeastLikely;
+}
+
+Eigen::Vector3d MapRegistration::upright_variance() const {
+  const double sigma_rad = options_.level_sigma_deg * kDegree;
+  return Eigen::Vector3d(options_.level_sigma_m, sigma_rad, sigma_rad).cwiseAbs2();
+}
+
+/// Of the body: in the plane by the match, out of it by the floor.
+Matrix6d MapRegistration::covariance_of(const MapMatch& match) const {
+  const Eigen::Vector3d upright = upright_variance();
+  Matrix6d covariance = Matrix6d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    covariance(kUpright[i], kUpright[i]) = upright[i];
+    for (int j = 0; j < 3; ++j) covariance(kPlanar[i], kPlanar[j]) = match.pose.covariance(i, j);
+  }
+  return covariance;
 }
 
 /// The look of the global map that stands nearest.

@@ -41,6 +41,9 @@ class MapRegistration {
     int64_t frame;
   };
   const Look* nearest_old_look(const Pose& T_map_left, const std::vector<Pose>& T_map_place) const;
+  bool on_one_floor(const Pose& T_body_matched, const Matrix6d& known_body) const;
+  Eigen::Vector3d upright_variance() const;  ///< of z, roll, pitch
+  Matrix6d covariance_of(const MapMatch& match) const;
   OccupancyMap local_map(const Pose& T_map_local, const std::vector<Pose>& T_map_place) const;
 
   StereoRig rig_;
