@@ -89,12 +89,14 @@ void write_frames_csv(const std::string& file, const std::vector<slam::FrameResu
 void write_key_frames_csv(const std::string& file, const std::vector<slam::KeyFrameRecord>& key_frames) {
   slam::write_file_atomically(file, [&](std::ostream& out) {
     out << "index,stamp_ns,segment,x,y,z,qx,qy,qz,qw";
+    out << ",motion_x,motion_y,motion_z,motion_qx,motion_qy,motion_qz,motion_qw";
     for (int row = 0; row < 6; ++row) {
       for (int col = row; col < 6; ++col) fmt::print(out, ",c{}{}", row, col);
     }
     out << "\n";
     for (const slam::KeyFrameRecord& k : key_frames) {
-      fmt::print(out, "{},{},{},{}", k.index, k.stamp_ns, k.segment, pose_cells(k.T_map_left));
+      fmt::print(out, "{},{},{},{},{}", k.index, k.stamp_ns, k.segment, pose_cells(k.T_map_left),
+                 pose_cells(k.T_previous_left));
       for (int row = 0; row < 6; ++row) {
         for (int col = row; col < 6; ++col) fmt::print(out, ",{}", k.covariance(row, col));
       }

@@ -98,7 +98,7 @@ LoopScore RunJudge::loops() const {
   return score_loops(key_frames, true_revisits(sight_, key_frames), std::move(links));
 }
 
-/// Motions from key frame to key frame of one segment, with the covariances that the map keeps of them.
+/// Motions from key frame to key frame of one segment as odometry knows them, with their covariances.
 Metrics RunJudge::uncertainty() const {
   NeesSum sum;
   const std::vector<slam::KeyFrameRecord>& key_frames = core_.key_frames();
@@ -106,7 +106,7 @@ Metrics RunJudge::uncertainty() const {
     const slam::KeyFrameRecord& before = key_frames[i - 1];
     const slam::KeyFrameRecord& now = key_frames[i];
     if (before.segment != now.segment) continue;
-    sum.add(nees(before.T_map_left.inverse() * now.T_map_left, now.covariance,
+    sum.add(nees(now.T_previous_left, now.covariance,
                  T_world_seen(before.index).inverse() * T_world_seen(now.index)));
   }
   return sum.metrics();

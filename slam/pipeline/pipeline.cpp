@@ -19,6 +19,7 @@ namespace groundloop::slam {
 namespace {
 
 constexpr int64_t kEnd = std::numeric_limits<int64_t>::max();
+constexpr double kLeastVariance = 0.01;  // relative to the stated noise: images have rounded grey values
 
 }  // namespace
 
@@ -264,7 +265,8 @@ void Pipeline::Impl::stop_here(const StereoFrame& frame, bool starts_segment, co
   kf_frame = frame.index;
   const auto number = static_cast<int>(stops.size());
   stops.push_back({T_odom_kf, static_cast<int>(T_map_odom_by_tie.size()) - 1});
-  key_frames.push_back({frame.index, frame.stamp_ns, segment, T_map_odom() * T_odom_kf, covariance, {}});
+  key_frames.push_back(
+      {frame.index, frame.stamp_ns, segment, T_map_odom() * T_odom_kf, Pose::Identity(), covariance, {}});
   window.add(number, T_odom_kf, T_kf_planned, front.features());
   T_kf_planned = Pose::Identity();
   if (adjusts) give_to_adjustment(frame);
@@ -292,11 +294,14 @@ void Pipeline::Impl::take_adjustment(const Adjusted& adjusted) {
   // A loss of track since then has started a new window.
   if (!result.usable || numbers.back() != static_cast<int>(stops.size()) - 1) return;
   window.refine(numbers, result.T_odom_left);
+  // What the misfits say of the noise, and what they cannot say: how alike a feature's errors are.
+  const double honest = options.adjustment.error_likeness * std::max(result.variance_factor, kLeastVariance);
   for (size_t i = 0; i < numbers.size(); ++i) {
     stops[numbers[i]].T_odom_left = result.T_odom_left[i];
     if (i == 0) continue;
-    key_frames[numbers[i]].covariance = result.motion_covariance[i];
-    known_better.push_back({numbers[i], result.T_odom_left[i], result.motion_covariance[i]});
+    const Matrix6d covariance = honest * result.motion_covariance[i];
+    key_frames[numbers[i]].covariance = covariance;
+    known_better.push_back({numbers[i], result.T_odom_left[i], covariance});
   }
   T_odom_kf = result.T_odom_left.back();
   const Pose T_kf_odom = T_odom_kf.inverse();
@@ -381,6 +386,8 @@ void Pipeline::Impl::finish() {
 void Pipeline::Impl::update_path() {
   for (size_t k = 0; k < stops.size(); ++k) {
     key_frames[k].T_map_left = T_map_odom_by_tie[stops[k].tie] * stops[k].T_odom_left;
+    if (k == 0 || key_frames[k].segment != key_frames[k - 1].segment) continue;
+    key_frames[k].T_previous_left = stops[k - 1].T_odom_left.inverse() * stops[k].T_odom_left;
   }
   trajectory.clear();
   for (const Step& step : steps) {

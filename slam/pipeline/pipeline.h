@@ -20,8 +20,10 @@ struct KeyFrameRecord {
   int64_t stamp_ns = 0;
   int segment = 0;
   Pose T_map_left = Pose::Identity();
-  Matrix6d covariance =
-      Matrix6d::Zero();  ///< of the motion from the key frame before, right perturbation in this one
+  /// Motion from the key frame before, as odometry measured it: recognised places move T_map_left besides.
+  /// Identity at the first of a segment.
+  Pose T_previous_left = Pose::Identity();
+  Matrix6d covariance = Matrix6d::Zero();  ///< of T_previous_left, right perturbation
   /// What it added to the map, known after finish(); empty when newer key frames of its place replaced it.
   std::vector<MapObservation> observations;
 };

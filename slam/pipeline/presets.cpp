@@ -11,6 +11,7 @@ SlamOptions paper() {
   options.tracking.min_kept_ratio = 0;
   options.klt.max_sigma_px = 0.3;
   options.registration.cost = RegistrationCost::kScalarQuadratic;
+  options.registration.sigma_px = 0.2;
   options.stereo.epipolar_gate_px = 1;
   options.mapping.fuse_layers = false;
   options.mapping.ends_deny_empty = false;

@@ -21,7 +21,7 @@ enum class RegistrationCost {
 /// Options of registration. YAML: slam.registration
 struct RegistrationOptions {
   RegistrationCost cost = RegistrationCost::kReprojection;
-  double sigma_px = 0.2;        ///< standard deviation of one image coordinate of a tracked feature
+  double sigma_px = 0.12;       ///< standard deviation of one image coordinate of a tracked feature
   double lorentz_scale = 1.0;   ///< in standard deviations: larger misfits lose weight
   double inlier_gate_px = 2.5;  ///< reprojection misfit that still counts as agreement
   int ransac_iterations = 100;  ///< three-point samples tried for the start
