@@ -1,6 +1,9 @@
 #include "bench/runner/replay.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -31,6 +34,11 @@ using Clock = std::chrono::steady_clock;
 /// Truths of recorded cameras are in the axes of the first left camera, whose y points down.
 const Eigen::Vector3d kUpInFirstCamera = -Eigen::Vector3d::UnitY();
 
+bool out_of_order(const slam::StereoSource& source) {
+  const auto* kitti = dynamic_cast<const slam::KittiSource*>(&source);
+  return kitti != nullptr && kitti->out_of_order();
+}
+
 std::unique_ptr<slam::StereoSource> open_source(const ReplayOptions& options) {
   if (!fs::is_directory(options.dir)) {
     throw InputError(Problem{options.dir, 0, "", "no such folder", "a recorded stereo sequence"});
@@ -53,8 +61,12 @@ struct RecordedTruth {
 };
 
 /// Poses of a file without stamps are those of the pairs, in order.
-slam::Trajectory stamped(TrajectoryFile file, const slam::Trajectory& estimate) {
+slam::Trajectory stamped(TrajectoryFile file, const slam::Trajectory& estimate, bool rearranged) {
   if (file.has_stamps()) return file.poses;
+  if (rearranged) {
+    throw InputError(
+        Problem{file.file, 0, "", "poses without times", "a file with times (gt.tum), as times.txt goes back"});
+  }
   if (file.poses.size() < estimate.size()) {
     throw InputError(Problem{file.file, 0, "", std::to_string(file.poses.size()) + " poses",
                              "one a pair, that is " + std::to_string(estimate.size())});
@@ -64,11 +76,11 @@ slam::Trajectory stamped(TrajectoryFile file, const slam::Trajectory& estimate) 
   return file.poses;
 }
 
-RecordedTruth find_truth(const ReplayOptions& options, const slam::Trajectory& estimate) {
-  if (!options.truth.empty()) return {stamped(read_trajectory(options.truth), estimate), {}};
+RecordedTruth find_truth(const ReplayOptions& options, const slam::Trajectory& estimate, bool rearranged) {
+  if (!options.truth.empty()) return {stamped(read_trajectory(options.truth), estimate, rearranged), {}};
   for (const char* name : {"/gt.tum", "/poses.txt"}) {
     const std::string file = options.dir + name;
-    if (fs::exists(file)) return {stamped(read_trajectory(file), estimate), {}};
+    if (fs::exists(file)) return {stamped(read_trajectory(file), estimate, rearranged), {}};
   }
   const std::string point = options.dir + "/gt_point.tum";
   if (fs::exists(point)) return {{}, read_point_truth(point)};
@@ -90,6 +102,10 @@ RunOutcome replay(const ReplayOptions& options, const JobControl& control) {
   const std::unique_ptr<slam::StereoSource> source = open_source(options);
   const std::string folder = options.out.empty() ? "runs/" + name : options.out;
   OutputFolder out(folder);
+  if (out_of_order(*source)) {
+    fmt::print(stderr, "{}/times.txt: warning: times go back; the pairs are taken in order of time\n",
+               options.dir);
+  }
 
   slam::Pipeline core(source->rig(), core_options);
   const int64_t frames = std::min(options.frames.value_or(INT64_MAX), source->size().value_or(INT64_MAX));
@@ -110,7 +126,7 @@ RunOutcome replay(const ReplayOptions& options, const JobControl& control) {
   std::vector<FrameNotes> notes(core_run.frames.size(),
                                 {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, ""});
   for (size_t i = 0; i < notes.size(); ++i) notes[i].memory_mb = memory[i];
-  const RecordedTruth truth = find_truth(options, core.trajectory());
+  const RecordedTruth truth = find_truth(options, core.trajectory(), out_of_order(*source));
   std::optional<slam::Pose> T_world_map;
   if (!truth.poses.empty()) {
     PosePairs pairs = associate_by_time(truth.poses, core.trajectory());

@@ -72,7 +72,7 @@ StereoRig rig_of(const Projection& P0, const Projection& P1, const std::string& 
   return rig;
 }
 
-std::vector<int64_t> read_times(const std::string& file, bool any_order, std::vector<Problem>& problems) {
+std::vector<int64_t> read_times(const std::string& file, std::vector<Problem>& problems) {
   std::vector<int64_t> stamps_ns;
   std::set<int64_t> known;
   for (const TextLine& line : read_lines(file, kWantedTimes)) {
@@ -82,10 +82,7 @@ std::vector<int64_t> read_times(const std::string& file, bool any_order, std::ve
       problems.push_back({file, line.number, "", line.text, "a time in seconds"});
       continue;
     }
-    if (!any_order && !stamps_ns.empty() && *stamp_ns <= stamps_ns.back()) {
-      problems.push_back({file, line.number, "", line.text, "a time after that of the line before"});
-    }
-    if (any_order && !known.insert(*stamp_ns).second) {
+    if (!known.insert(*stamp_ns).second) {
       problems.push_back({file, line.number, "", line.text, "a time that no other pair has"});
     }
     stamps_ns.push_back(*stamp_ns);
@@ -135,7 +132,7 @@ KittiSource::KittiSource(const std::string& directory, const SourceOptions& opti
     const auto projections = read_projections(file, problems);
     if (problems.size() == before) rig_ = rig_of(projections.at("P0"), projections.at("P1"), file, problems);
   });
-  collect([&] { stamps_ns_ = read_times(directory + "/times.txt", options.any_order, problems); });
+  collect([&] { stamps_ns_ = read_times(directory + "/times.txt", problems); });
   left_files_ = list_images(directory + "/image_0", problems);
   right_files_ = list_images(directory + "/image_1", problems);
   if (!problems.empty()) throw InputError(std::move(problems));
@@ -149,7 +146,8 @@ KittiSource::KittiSource(const std::string& directory, const SourceOptions& opti
                         fmt::format("{}, one for every line of times.txt", stamps_ns_.size())});
   }
   if (!problems.empty()) throw InputError(std::move(problems));
-  if (options.any_order) {
+  out_of_order_ = !std::is_sorted(stamps_ns_.begin(), stamps_ns_.end());
+  if (out_of_order_) {
     std::vector<size_t> order(stamps_ns_.size());
     std::iota(order.begin(), order.end(), size_t{0});
     std::sort(order.begin(), order.end(),

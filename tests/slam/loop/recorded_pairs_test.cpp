@@ -36,7 +36,7 @@ TEST(RecordedPairs, AreLinkedWithinTheirPlaceAndNotAcross) {
   const std::string directory = data + "/euroc_v101_lc_pairs";
   if (!std::filesystem::is_directory(directory)) GTEST_SKIP() << "no recorded data at " << directory;
 
-  KittiSource source(directory, {.any_order = true});
+  KittiSource source(directory);
   const std::vector<Pose> poses = read_poses(directory + "/poses.txt");
   ASSERT_EQ(poses.size(), 4U);
   const int pair_of[4] = {1, 0, 3, 2};  // the order of their times

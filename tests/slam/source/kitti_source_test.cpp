@@ -89,6 +89,7 @@ TEST(KittiSource, DeliversEveryPairInOrder) {
   write_sequence(folder);
   KittiSource source(folder.path());
   EXPECT_EQ(source.size(), 3);
+  EXPECT_FALSE(source.out_of_order());
   const std::vector<int64_t> stamps_ns = {0, 100000000, 250000000};
   for (int i = 0; i < 3; ++i) {
     const auto frame = source.next();
@@ -108,7 +109,8 @@ TEST(KittiSource, DeliversPairsListedInAnyOrderInOrderOfTime) {
   const TemporaryFolder folder;
   write_sequence(folder);
   folder.write("times.txt", "0.5\n-98.449999872\n14\n");
-  KittiSource source(folder.path(), {.any_order = true});
+  KittiSource source(folder.path());
+  EXPECT_TRUE(source.out_of_order());
   EXPECT_EQ(source.stamps_ns(), (std::vector<int64_t>{-98449999872, 500000000, 14000000000}));
   for (const int pair : {1, 0, 2}) {
     const auto frame = source.next();
@@ -118,11 +120,11 @@ TEST(KittiSource, DeliversPairsListedInAnyOrderInOrderOfTime) {
   }
 }
 
-TEST(KittiSource, RefusesTwoPairsOfOneTimeInAnyOrder) {
+TEST(KittiSource, RefusesTwoPairsOfOneTime) {
   const TemporaryFolder folder;
   write_sequence(folder);
   folder.write("times.txt", "0.5\n0.1\n0.5\n");
-  EXPECT_EQ(messages(folder, [&] { KittiSource(folder.path(), {.any_order = true}); }),
+  EXPECT_EQ(messages(folder, [&] { KittiSource(folder.path()); }),
             (Lines{"times.txt:3: 0.5: wanted a time that no other pair has"}));
 }
 
@@ -174,7 +176,7 @@ TEST(KittiSource, NamesTheWrongTimes) {
   EXPECT_EQ(
       messages_of_opening(folder),
       (Lines{"times.txt:2: noon: wanted a time in seconds", "times.txt:3: 0.2 0.3: wanted a time in seconds",
-             "times.txt:4: 0.0: wanted a time after that of the line before"}));
+             "times.txt:4: 0.0: wanted a time that no other pair has"}));
   folder.write("times.txt", "\n");
   EXPECT_EQ(messages_of_opening(folder),
             Lines{"times.txt: no times: wanted a text file, one time in seconds a line"});
