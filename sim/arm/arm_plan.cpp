@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "sim/arm/arm_clearance.h"
 #include "sim/arm/arm_servo.h"
@@ -52,20 +54,21 @@ class Planner {
   }
 
   ArmPlan make() {
-    for (const CameraStop& stop : plan_.stops) postures_.push_back(postures_at(stop));
+    for (const CameraStop& stop : plan_.stops) {
+      postures_.push_back(postures_at(stop));
+      go_to_next_stop();
+    }
     give_up_on_problems();
     choose();
-    for (size_t i = 0; i < plan_.stops.size(); ++i) check_way_to(i);
+    for (size_t i = 0; i < plan_.stops.size(); ++i) {
+      check_way_to(i);
+      go_to_next_stop();
+    }
     give_up_on_problems();
     return std::move(plan_);
   }
 
  private:
-  void refuse(const CameraStop& stop, const std::string& why, const std::string& wanted) {
-    problems_.push_back(
-        {scenario_.file, stop.line, stop.key, fmt::format("{}: {}", place_of(stop), why), wanted});
-  }
-
   void give_up_on_problems() {
     if (problems_.empty()) return;
     throw InputError(std::move(problems_));
@@ -99,10 +102,7 @@ class Planner {
         postures.push_back(posture);
       }
     }
-    if (!postures.empty()) {
-      in_trouble_.clear();
-      return postures;
-    }
+    if (!postures.empty()) return postures;
     tell(stop, touched.empty() ? reason : touched,
          touched.empty() ? "a place and a look direction that the arm can reach"
                          : fmt::format("a pose at which the arm stays {} m clear of everything", margin_m_));
@@ -111,10 +111,12 @@ class Planner {
 
   /// Says what is wrong with a stop, unless a generated neighbour before it had the same trouble.
   void tell(const CameraStop& stop, const std::string& why, const std::string& wanted) {
-    const bool goes_on = scenario_.plan.path && in_trouble_ == wanted;
-    in_trouble_ = wanted;
-    if (!goes_on) refuse(stop, why, wanted);
+    in_vain_.insert(wanted);
+    if (scenario_.plan.path && in_vain_before_.contains(wanted)) return;
+    problems_.push_back(
+        {scenario_.file, stop.line, stop.key, fmt::format("{}: {}", place_of(stop), why), wanted});
   }
+  void go_to_next_stop() { in_vain_before_ = std::exchange(in_vain_, {}); }
 
   /// The sequence of least effort (Viterbi), then every angle in the turn nearest to the one before.
   void choose() {
@@ -198,7 +200,8 @@ class Planner {
   const double period_s_;
   ArmPlan plan_;
   std::vector<std::vector<Posture>> postures_;  ///< by stop
-  std::string in_trouble_;                      ///< what was wanted of the stop before, in vain
+  std::set<std::string> in_vain_,
+      in_vain_before_;  ///< what was wanted of this stop, and of the one before it
   std::vector<Problem> problems_;
 };
 
