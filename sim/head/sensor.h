@@ -64,11 +64,11 @@ class Sensor {
                 cv::Mat& grey) const;
 
  private:
-  /// Of one row.
-  struct Noise {
-    std::vector<float> shot, read;
-  };
-  void draw(uint64_t key, int row, Noise& noise) const;
+  struct Scale;
+  struct Row;
+  void draw(uint64_t key, int row, Row& r) const;
+  void collect(const float* light, uint64_t key, int row, const Scale& scale, Row& r) const;
+  void convert(int row, const Scale& scale, const Row& r, uchar* grey) const;
 
   const SensorModel model_;
   const cv::Size size_;
