@@ -1,5 +1,6 @@
 #include "bench/metrics/trajectory_file.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 #include <charconv>
@@ -67,7 +68,8 @@ std::string shortened(std::string_view text) {
 /// Reads pose after pose and keeps the list of what is wrong.
 class Reader {
  public:
-  explicit Reader(const std::string& file) : file_(file), in_(file) {
+  explicit Reader(const std::string& file, StampOrder order = StampOrder::kRising)
+      : file_(file), order_(order), in_(file) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error)) {
       throw InputError(Problem{file, 0, "", "no such file", "a trajectory file"});
@@ -89,6 +91,8 @@ class Reader {
       throw InputError(Problem{file_, 0, "", "no pose", "at least one line with a pose"});
     }
     if (!problems_.empty()) throw InputError(problems_);
+    std::stable_sort(result.poses.begin(), result.poses.end(),
+                     [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; });
     return result;
   }
 
@@ -202,7 +206,7 @@ class Reader {
   }
 
   void append(const slam::StampedPose& pose, const std::string& line, slam::Trajectory& poses) {
-    if (!poses.empty() && pose.stamp_ns < poses.back().stamp_ns) {
+    if (order_ == StampOrder::kRising && !poses.empty() && pose.stamp_ns < poses.back().stamp_ns) {
       problem(line, "a time not before that of the line above");
       return;
     }
@@ -210,6 +214,7 @@ class Reader {
   }
 
   std::string file_;
+  StampOrder order_;
   std::ifstream in_;
   int line_ = 0;
   int64_t poses_read_ = 0;
@@ -238,7 +243,9 @@ TrajectoryFile read_trajectory(const std::string& file, TrajectoryFormat format)
   return Reader(file).read(format);
 }
 
-TrajectoryFile read_trajectory(const std::string& file) { return Reader(file).read(std::nullopt); }
+TrajectoryFile read_trajectory(const std::string& file, StampOrder order) {
+  return Reader(file, order).read(std::nullopt);
+}
 
 std::string tum_line(const slam::StampedPose& pose) {
   constexpr int64_t kSecond = 1'000'000'000;

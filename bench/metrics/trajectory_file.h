@@ -15,6 +15,12 @@ enum class TrajectoryFormat {
   kEuroc   ///< nanoseconds, x, y, z, qw, qx, qy, qz and any further columns, separated by commas
 };
 
+/// What the times of a file may do.
+enum class StampOrder {
+  kRising,  ///< a time that goes back is an error
+  kAny      ///< poses are put in order of time
+};
+
 struct TrajectoryFile {
   std::string file;
   TrajectoryFormat format = TrajectoryFormat::kTum;
@@ -32,7 +38,7 @@ struct TrajectoryFile {
 TrajectoryFile read_trajectory(const std::string& file, TrajectoryFormat format);
 
 /// The same, with the format told from the columns of the first pose.
-TrajectoryFile read_trajectory(const std::string& file);
+TrajectoryFile read_trajectory(const std::string& file, StampOrder order = StampOrder::kRising);
 
 /// Writes TUM (stamps to the nanosecond, other numbers with 12 decimals) or KITTI.
 /// @throws InputError when the file cannot be written

@@ -77,10 +77,11 @@ slam::Trajectory stamped(TrajectoryFile file, const slam::Trajectory& estimate, 
 }
 
 RecordedTruth find_truth(const ReplayOptions& options, const slam::Trajectory& estimate, bool rearranged) {
-  if (!options.truth.empty()) return {stamped(read_trajectory(options.truth), estimate, rearranged), {}};
+  const StampOrder order = rearranged ? StampOrder::kAny : StampOrder::kRising;
+  if (!options.truth.empty()) return {stamped(read_trajectory(options.truth, order), estimate, rearranged), {}};
   for (const char* name : {"/gt.tum", "/poses.txt"}) {
     const std::string file = options.dir + name;
-    if (fs::exists(file)) return {stamped(read_trajectory(file), estimate, rearranged), {}};
+    if (fs::exists(file)) return {stamped(read_trajectory(file, order), estimate, rearranged), {}};
   }
   const std::string point = options.dir + "/gt_point.tum";
   if (fs::exists(point)) return {{}, read_point_truth(point)};

@@ -166,5 +166,16 @@ TEST(TrajectoryFile, SaysWhereItCannotWrite) {
             "no/such/folder/a.tum: cannot be written: wanted a file in a writable folder");
 }
 
+TEST(TrajectoryFile, PosesOfAnyOrderArePutInOrderOfTime) {
+  const TestFolder folder;
+  const std::string file =
+      folder.write("any.tum", "0.5 1 0 0 0 0 0 1\n-98.25 2 0 0 0 0 0 1\n14 3 0 0 0 0 0 1\n");
+  const slam::Trajectory poses = read_trajectory(file, StampOrder::kAny).poses;
+  ASSERT_EQ(poses.size(), 3u);
+  EXPECT_EQ(poses[0].stamp_ns, -98250000000);
+  EXPECT_EQ(poses[0].T.translation().x(), 2);
+  EXPECT_EQ(poses[2].T.translation().x(), 3);
+}
+
 }  // namespace
 }  // namespace groundloop::bench
