@@ -1,7 +1,7 @@
 #include "bench/metrics/trajectory_file.h"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <charconv>
 #include <cmath>

@@ -64,8 +64,8 @@ struct RecordedTruth {
 slam::Trajectory stamped(TrajectoryFile file, const slam::Trajectory& estimate, bool rearranged) {
   if (file.has_stamps()) return file.poses;
   if (rearranged) {
-    throw InputError(
-        Problem{file.file, 0, "", "poses without times", "a file with times (gt.tum), as times.txt goes back"});
+    throw InputError(Problem{file.file, 0, "", "poses without times",
+                             "a file with times (gt.tum), as times.txt goes back"});
   }
   if (file.poses.size() < estimate.size()) {
     throw InputError(Problem{file.file, 0, "", std::to_string(file.poses.size()) + " poses",
@@ -78,7 +78,8 @@ slam::Trajectory stamped(TrajectoryFile file, const slam::Trajectory& estimate, 
 
 RecordedTruth find_truth(const ReplayOptions& options, const slam::Trajectory& estimate, bool rearranged) {
   const StampOrder order = rearranged ? StampOrder::kAny : StampOrder::kRising;
-  if (!options.truth.empty()) return {stamped(read_trajectory(options.truth, order), estimate, rearranged), {}};
+  if (!options.truth.empty())
+    return {stamped(read_trajectory(options.truth, order), estimate, rearranged), {}};
   for (const char* name : {"/gt.tum", "/poses.txt"}) {
     const std::string file = options.dir + name;
     if (fs::exists(file)) return {stamped(read_trajectory(file, order), estimate, rearranged), {}};

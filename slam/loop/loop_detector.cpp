@@ -38,6 +38,7 @@ LoopDetector::LoopDetector(const StereoRig& rig, const LoopOptions& options, con
 
 LoopAnswer LoopDetector::process(const LoopKeyFrame& key_frame, const RelativePose& relative_pose) {
   current_.view.index = key_frame.index;
+  in_sight_since_ = key_frame.in_sight_since;
   current_.view.grey = key_frame.left;
   current_.view.landmarks = key_frame.landmarks;
   current_.half_disparity = key_frame.half_disparity;
@@ -102,7 +103,8 @@ void LoopDetector::choose_candidates(const RelativePose& relative_pose) {
     const StoredView& stored = views_[static_cast<size_t>(view)];
     const auto prediction = relative_pose(stored.index, current_.view.index);
     // What the tracker has just seen is no news, unless it has lost its way since.
-    const bool young = stored.index > current_.view.index - options_.min_age_frames;
+    const bool young =
+        stored.index > std::min(current_.view.index - options_.min_age_frames, in_sight_since_);
     if (prediction && young) continue;
     double score = alike[static_cast<size_t>(view)];
     if (prediction && verifier_.precise_enough(stored, *prediction)) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,7 +19,10 @@ namespace groundloop::slam {
 
 /// A key frame as it is handed to the loop detector. Images must not change afterwards.
 struct LoopKeyFrame {
-  int64_t index = 0;       ///< of the frame, increasing
+  int64_t index = 0;  ///< of the frame, increasing
+  /// Frame since which the tracker has not lost sight of what it sees now; views younger than this are no
+  /// news. The largest: whatever was seen before is.
+  int64_t in_sight_since = std::numeric_limits<int64_t>::max();
   cv::Mat left, right;     ///< rectified, CV_8UC1
   cv::Mat half_disparity;  ///< DenseDisparity::half_resolution() of the pair
   std::vector<Landmark> landmarks;
@@ -82,6 +86,7 @@ class LoopDetector {
   LoopVerifier verifier_;
   std::vector<StoredView> views_;
   CurrentView current_;
+  int64_t in_sight_since_ = 0;  ///< of the current key frame
   std::vector<PlaceCandidate> alike_;
   std::vector<Candidate> candidates_;
   std::optional<Pending> pending_;

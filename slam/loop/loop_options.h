@@ -10,7 +10,7 @@ struct LoopOptions {
   int descriptors = 400;           ///< described corners a key frame
   int landmarks = 160;             ///< stored landmarks looked for in the current images, at most
   int candidates = 3;              ///< stored views tried a key frame
-  int min_age_frames = 150;        ///< younger views are the tracker's own ground
+  int min_age_frames = 30;         ///< younger views, and those whose features are tracked yet, are no news
   int max_views = 1000;            ///< beyond it no further view is stored
   int min_inliers = 30;            ///< landmarks that agree on one motion
   double min_inlier_ratio = 0.45;  ///< of the stored landmarks that should be seen now

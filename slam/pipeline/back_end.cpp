@@ -119,8 +119,9 @@ void BackEnd::register_map(std::optional<LoopLink>& link) {
   const RelativeMotion seen = RelativeMotion{from.T_place_left, from.covariance} *
                               RelativeMotion{sight->T_from_to, sight->covariance};
   if (!places_.recognise({from.place, newest, seen.T_from_to, seen.covariance}, false)) return;
-  link = LoopLink{LinkKind::kMap,   frames_[sight->from_key_frame], frames_[newest],
-                  sight->T_from_to, sight->covariance,              sight->cells};
+  link = LoopLink{LinkKind::kMap,    frames_[sight->from_key_frame],
+                  frames_[newest],   sight->T_from_to,
+                  sight->covariance, sight->cells};
 }
 
 std::optional<LoopLink> BackEnd::ask_oracle(int64_t frame) const {

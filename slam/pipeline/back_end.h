@@ -65,8 +65,8 @@ class BackEnd {
   DensePoints dense_points_;
   MapBuilder map_;
   std::optional<MapRegistration> map_registration_;  ///< none when it is not wanted
-  std::vector<int64_t> frames_;     ///< by key frame
-  std::vector<int> stored_places_;  ///< key frames that exact_loops_ may recognise
+  std::vector<int64_t> frames_;                      ///< by key frame
+  std::vector<int> stored_places_;                   ///< key frames that exact_loops_ may recognise
 };
 
 }  // namespace groundloop::slam

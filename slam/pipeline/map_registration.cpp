@@ -106,7 +106,8 @@ std::optional<MapSight> MapRegistration::match(PlaceMap& places) {
                   static_cast<int>(match.overlap * match.agreement * match.cells)};
 }
 
-/// Whether what was known of height and tilt allows the correction: a drone, or a ramp, is on no common floor.
+/// Whether what was known of height and tilt allows the correction: a drone, or a ramp, is on no common
+/// floor.
 bool MapRegistration::on_one_floor(const Pose& T_body_matched, const Matrix6d& known_body) const {
   constexpr double kLeastLikely = 16.3;  // chi square of three degrees of freedom, one in a thousand
   const Vector6d change = se3_log(T_body_matched);
@@ -148,11 +149,10 @@ const Look* MapRegistration::nearest_old_look(const Pose& T_map_left,
 }
 
 /// The newest looks of this segment, in a frame of their own: combined views that may look around.
-OccupancyMap MapRegistration::local_map(const Pose& T_map_local,
-                                        const std::vector<Pose>& T_map_place) const {
+OccupancyMap MapRegistration::local_map(const Pose& T_map_local, const std::vector<Pose>& T_map_place) const {
   Mapper mapper(rig_, mapping_);
-  const auto looks = std::min<size_t>({held_.size(), static_cast<size_t>(in_segment_),
-                                       static_cast<size_t>(options_.key_frames)});
+  const auto looks = std::min<size_t>(
+      {held_.size(), static_cast<size_t>(in_segment_), static_cast<size_t>(options_.key_frames)});
   for (size_t i = held_.size() - looks; i < held_.size(); ++i) {
     const Look& look = held_[i].look;
     mapper.add(T_map_local.inverse() * T_map_place[look.place] * look.T_place_left, look.observations);

@@ -13,7 +13,7 @@ namespace groundloop::slam {
 /// Where the local map says that the newest key frame stands, seen from an earlier one.
 struct MapSight {
   int from_key_frame = 0;
-  Pose T_from_to = Pose::Identity();        ///< newest left camera in the earlier one
+  Pose T_from_to = Pose::Identity();       ///< newest left camera in the earlier one
   Matrix6d covariance = Matrix6d::Zero();  ///< of T_from_to, right perturbation
   int cells = 0;                           ///< of the local map that agree with the global one
 };
@@ -31,8 +31,8 @@ class MapRegistration {
   /// @param starts_segment  whether track was lost before: the local map begins anew
   void add(Look look, int64_t frame, bool starts_segment, const std::vector<Pose>& T_map_place);
 
-  /// Registers the maps when it is due and when the newest look's pose is known too little; none otherwise, or
-  /// when the maps have not enough structure.
+  /// Registers the maps when it is due and when the newest look's pose is known too little; none otherwise,
+  /// or when the maps have not enough structure.
   std::optional<MapSight> match(PlaceMap& places);
 
  private:

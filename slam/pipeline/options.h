@@ -42,7 +42,7 @@ struct KeyFrameOptions {
 struct BackgroundOptions {
   bool threads = true;            ///< false: done at once, with the same results at the same frames
   int adjustment_lag_frames = 2;  ///< after a key frame, until its adjustment enters
-  int map_lag_frames = 8;         ///< after a key frame, until what was recognised in it enters
+  int map_lag_frames = 6;         ///< after a key frame, until what was recognised in it enters
 
   template <class Archive>
   void visit(Archive& a) {

@@ -59,6 +59,7 @@ struct Pipeline::Impl {
   void take_answer(const BackEndAnswer& answer, FrameResult& result);
   Look look(const StereoFrame& frame);
   std::vector<Landmark> landmarks() const;
+  int64_t in_sight_since() const;
   void finish();
   void update_path();
   void hang_held_frames_on(int key_frame, const Pose& T_kf_start);
@@ -330,6 +331,7 @@ void Pipeline::Impl::give_to_back_end(const StereoFrame& frame, bool starts_segm
     handed_over->sight.right = frame.right.clone();
     handed_over->sight.half_disparity = front.dense().half_resolution().clone();
     handed_over->sight.landmarks = landmarks();
+    handed_over->sight.in_sight_since = in_sight_since();
   }
   handed_over->look = look(frame);
   mapping.submit(frame.index + options.background.map_lag_frames,
@@ -352,6 +354,16 @@ Look Pipeline::Impl::look(const StereoFrame& frame) {
          frame.left.at<uint8_t>(cvRound(feature.left.uv_px.y()), cvRound(feature.left.uv_px.x()))});
   }
   return look;
+}
+
+/// First frame of the features that have been tracked longest, but for a few: far ones live for very long.
+int64_t Pipeline::Impl::in_sight_since() const {
+  constexpr size_t kFew = 20;
+  std::vector<int64_t> first_frames;
+  for (const Feature& feature : front.features()) first_frames.push_back(feature.first_frame);
+  if (first_frames.size() <= kFew) return kEnd;
+  std::nth_element(first_frames.begin(), first_frames.begin() + kFew, first_frames.end());
+  return first_frames[kFew];
 }
 
 std::vector<Landmark> Pipeline::Impl::landmarks() const {
