@@ -168,7 +168,8 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   write_frames_csv(out.file("frames.csv"), core_run.frames, notes);
   write_metrics_json(out.file("metrics.json"), outcome.metrics);
   figures.write(out.file("figures"));
-  cv::imwrite(out.file("figures/preview.png"), preview_picture(scene.standing(), scene.band(), source.simulation()));
+  cv::imwrite(out.file("figures/preview.png"),
+              preview_picture(scene.standing(), scene.band(), source.simulation()));
   RunHeader header = header_of(scenario, outcome, source.renderer_info());
   header.frames = static_cast<int64_t>(core_run.frames.size());
   write_run_json(out.file("run.json"), header);
