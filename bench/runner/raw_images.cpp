@@ -1,6 +1,5 @@
 #include "bench/runner/raw_images.h"
 
-#include <chrono>
 #include <opencv2/core.hpp>
 
 #include "sim/faults/image_faults.h"
@@ -134,10 +133,7 @@ void RawImages::transfer(const cv::Mat& left, const cv::Mat& right, bool swapped
   slam::deinterleave(bytes, left.size(), slam::FirstByte::kRight, raw_left, raw_right);
   slam::mosaic_to_grey(filter_, raw_left);
   slam::mosaic_to_grey(filter_, raw_right);
-  const auto start = std::chrono::steady_clock::now();
-  rectifier_.rectify(raw_left, raw_right, frame.left, frame.right);
-  frame.rectification_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  rectifier_.rectify(raw_left, raw_right, frame);
 }
 
 }  // namespace groundloop::bench

@@ -64,11 +64,10 @@ ExposureSetting ExposureControl::decided(const ExposureSetting& taken, double me
   const AutoExposureModel& law = *model_.automatic;
   const double error = law.target_grey / std::max(mean_grey, kDarkest_grey);
   const double wanted = taken.time_s * amplification(taken.gain_db) * std::pow(error, law.speed);
-  const double least_gain = amplification(model_.gain_db);
-  const double time_s = std::clamp(wanted / least_gain, law.min_time_s, law.max_time_s);
-  const double most_gain = amplification(std::max(law.max_gain_db, model_.gain_db));
-  const double gain = std::clamp(wanted / time_s, least_gain, most_gain);
-  return {time_s, decibels(gain)};
+  const double time_s = wanted / amplification(model_.gain_db);
+  if (time_s <= law.max_time_s) return {std::max(time_s, law.min_time_s), model_.gain_db};
+  const double gain_db = std::min(decibels(wanted / law.max_time_s), law.max_gain_db);
+  return {law.max_time_s, std::max(gain_db, model_.gain_db)};
 }
 
 }  // namespace groundloop::sim

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -53,6 +54,13 @@ void Rectifier::rectify(const cv::Mat& raw_left, const cv::Mat& raw_right, cv::M
   CV_Assert(raw_left.size() == size_ && raw_right.size() == size_);
   cv::remap(raw_left, left, left_map_[0], left_map_[1], cv::INTER_LINEAR);
   cv::remap(raw_right, right, right_map_[0], right_map_[1], cv::INTER_LINEAR);
+}
+
+void Rectifier::rectify(const cv::Mat& raw_left, const cv::Mat& raw_right, StereoFrame& frame) const {
+  const auto start = std::chrono::steady_clock::now();
+  rectify(raw_left, raw_right, frame.left, frame.right);
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+  frame.rectification_ms = took.count();
 }
 
 }  // namespace groundloop::slam

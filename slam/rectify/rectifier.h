@@ -4,6 +4,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "slam/rectify/stereo_calibration.h"
+#include "slam/types/stereo_frame.h"
 #include "slam/types/stereo_rig.h"
 
 namespace groundloop::slam {
@@ -25,6 +26,8 @@ class Rectifier {
 
   /// @param raw_left, raw_right  CV_8UC1 of the given size
   void rectify(const cv::Mat& raw_left, const cv::Mat& raw_right, cv::Mat& left, cv::Mat& right) const;
+  /// Fills the frame's images and notes the time it took.
+  void rectify(const cv::Mat& raw_left, const cv::Mat& raw_right, StereoFrame& frame) const;
 
  private:
   cv::Size size_;

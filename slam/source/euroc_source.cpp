@@ -182,7 +182,7 @@ std::optional<StereoFrame> EurocSource::next() {
   frame.stamp_ns = stamps_ns_[next_];
   const cv::Mat left = read_grey_image(left_files_[next_], rig_.width_px, rig_.height_px);
   const cv::Mat right = read_grey_image(right_files_[next_], rig_.width_px, rig_.height_px);
-  rectifier_->rectify(left, right, frame.left, frame.right);
+  rectifier_->rectify(left, right, frame);
   ++next_;
   return frame;
 }

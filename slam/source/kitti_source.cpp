@@ -171,7 +171,7 @@ std::optional<StereoFrame> KittiSource::next() {
   frame.right = read_grey_image(right_files_[next_], rig_.width_px, rig_.height_px);
   if (rectifier_) {
     const cv::Mat raw_left = std::exchange(frame.left, {}), raw_right = std::exchange(frame.right, {});
-    rectifier_->rectify(raw_left, raw_right, frame.left, frame.right);
+    rectifier_->rectify(raw_left, raw_right, frame);
   }
   ++next_;
   return frame;
