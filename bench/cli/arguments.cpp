@@ -1,6 +1,10 @@
 #include "bench/cli/arguments.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
+
+#include "sim/render/gl_context.h"
 
 namespace groundloop::bench {
 namespace {
@@ -59,6 +63,40 @@ CLI::Option* add_repeatable(CLI::App& command, const std::string& name, std::vec
                             const std::string& help) {
   // Any number of times, but one value each time: what follows it may be the scenario file.
   return command.add_option(name, values, help)->expected(-1)->allow_extra_args(false);
+}
+
+void add_cache(CLI::App& command, CacheChoice& choice) {
+  choice.folder = sim::default_cache_folder();
+  CLI::Option* const folder =
+      command.add_option("--cache", choice.folder, "keep rendered pairs here, for runs to come")
+          ->capture_default_str()
+          ->type_name("DIR");
+  const auto set_size = [&choice](double gigabytes) {
+    choice.max_bytes = static_cast<uint64_t>(gigabytes * 1e9);
+  };
+  command
+      .add_option_function<double>("--cache-gb", set_size, "drop pairs unused for longest beyond this size")
+      ->check(CLI::Range(0.001, 1e6))
+      ->default_str(fmt::format("{}", static_cast<double>(choice.max_bytes) * 1e-9))
+      ->type_name("GB");
+  command
+      .add_flag_callback(
+          "--no-cache", [&choice] { choice.folder.clear(); }, "render every pair")
+      ->excludes(folder);
+}
+
+void add_renderer(CLI::App& command) {
+  std::vector<std::string> names;
+  for (const auto& [backend, name] : EnumNames<sim::Backend>::names) names.emplace_back(name);
+  const auto choose = [](const std::string& given) {
+    for (const auto& [backend, name] : EnumNames<sim::Backend>::names) {
+      if (given == name) sim::choose_backend(backend);
+    }
+  };
+  command.add_option_function<std::string>("--renderer", choose, "who draws; the pixels are the same")
+      ->check(CLI::IsMember(names))
+      ->default_str(names.front())
+      ->type_name("NAME");
 }
 
 CLI::Option* add_set(CLI::App& command, std::vector<std::string>& set, const std::string& help) {

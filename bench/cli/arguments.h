@@ -47,6 +47,13 @@ std::vector<sim::Override> overrides_of(const std::vector<std::string>& texts);
 CLI::Option* add_repeatable(CLI::App& command, const std::string& name, std::vector<std::string>& values,
                             const std::string& help);
 
+/// The options `--cache DIR`, `--cache-gb N` and `--no-cache`.
+/// @param choice  the user's default, and what is chosen; must outlive the parsing
+void add_cache(CLI::App& command, CacheChoice& choice);
+
+/// The option `--renderer NAME`: chooses the backend of this process.
+void add_renderer(CLI::App& command);
+
 /// The option `--set KEY=VALUE`, repeatable.
 CLI::Option* add_set(CLI::App& command, std::vector<std::string>& set, const std::string& help);
 

@@ -20,6 +20,8 @@ void add_replay_command(CLI::App& app, CommandAction& action);
 void add_eval_command(CLI::App& app, CommandAction& action);
 void add_validate_command(CLI::App& app, CommandAction& action);
 void add_preview_command(CLI::App& app, CommandAction& action);
+void add_frame_command(CLI::App& app, CommandAction& action);
 void add_list_command(CLI::App& app, CommandAction& action);
+void add_cache_command(CLI::App& app, CommandAction& action);
 
 }  // namespace groundloop::bench

@@ -68,6 +68,8 @@ void add_oracles_command(CLI::App& app, CommandAction& action) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->type_name("N");
+  add_cache(*command, options->cache);
+  add_renderer(*command);
   command->add_flag("--json", options->json, "print the verdicts and metrics as JSON");
   command->callback([=, &action] {
     action = [=] {

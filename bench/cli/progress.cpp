@@ -70,6 +70,11 @@ void Progress::update(const std::string& name, int64_t done, int64_t total) {
        << std::flush;
 }
 
+void Progress::note(const std::string& name, const std::string& line) {
+  clear_bar();
+  out_ << fmt::format("{}: {}\n", name, line) << std::flush;
+}
+
 void Progress::draw_bar() {
   const double now_s = now_s_();
   std::string names;

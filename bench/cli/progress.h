@@ -24,6 +24,8 @@ class Progress {
   /// @param run    name shown
   /// @param total  pairs in all, at least 1; done == total finishes the run
   void update(const std::string& run, int64_t done, int64_t total);
+  /// A line of its own about a run.
+  void note(const std::string& run, const std::string& line);
 
  private:
   struct Run {

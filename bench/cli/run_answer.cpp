@@ -84,6 +84,7 @@ JobControl control_with(Progress& progress) {
   control.progress = [&progress](const std::string& run, int64_t done, int64_t total) {
     progress.update(run, done, total);
   };
+  control.note = [&progress](const std::string& run, const std::string& line) { progress.note(run, line); };
   control.stop = &stop_on_interrupt();
   return control;
 }

@@ -85,6 +85,8 @@ void add_run_command(CLI::App& app, CommandAction& action) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->type_name("N");
+  add_cache(*command, options->cache);
+  add_renderer(*command);
   command->add_flag("--json", options->json, "print the verdicts and metrics as JSON");
   command->callback([=, &action] {
     action = [=] {
@@ -112,8 +114,9 @@ void add_replay_command(CLI::App& app, CommandAction& action) {
   command->add_option("--frames", options->frames, "only the first N pairs")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
-  command->add_option("--calibration", options->calibration,
-                      "the images are raw: stereo calibration in OpenCV's YAML, in one file or two")
+  command
+      ->add_option("--calibration", options->calibration,
+                   "the images are raw: stereo calibration in OpenCV's YAML, in one file or two")
       ->expected(1, 2)
       ->type_name("FILE");
   command->add_option("--truth", options->truth, "trajectory to judge by; default: the sequence's own")

@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "bench/cli/arguments.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/scenario_check.h"
+#include "bench/runner/frame_export.h"
 #include "bench/runner/preview.h"
 #include "bench/runner/scenario_export.h"
 #include "bench/verdict/verdict.h"
@@ -106,7 +108,9 @@ void add_preview_command(CLI::App& app, CommandAction& action) {
   command->add_option("scenario", *file, "scenario file")->required()->type_name("FILE");
   command->add_option("--out", *out, "picture to write (default: NAME.png)")->type_name("PNG");
   const auto folder = std::make_shared<std::string>();
-  command->add_option("--export", *folder, "write what is generated into a folder, to be edited, in place of a picture")
+  command
+      ->add_option("--export", *folder,
+                   "write what is generated into a folder, to be edited, in place of a picture")
       ->type_name("DIR");
   const auto set = std::make_shared<std::vector<std::string>>();
   add_set(*command, *set, "set a key of the scenario; repeatable");
@@ -118,6 +122,31 @@ void add_preview_command(CLI::App& app, CommandAction& action) {
       } else {
         for (const std::string& written : export_scenario(scenario, *folder)) fmt::print("{}\n", written);
       }
+      return exit_code(Outcome::kPass);
+    };
+  });
+}
+
+void add_frame_command(CLI::App& app, CommandAction& action) {
+  CLI::App* command = app.add_subcommand("frame", "one pair of a scenario made again, with its exact truth");
+  const auto file = std::make_shared<std::string>();
+  const auto frame = std::make_shared<int64_t>(0);
+  const auto seed = std::make_shared<std::optional<uint64_t>>();
+  const auto set = std::make_shared<std::vector<std::string>>();
+  const auto out = std::make_shared<std::string>();
+  command->add_option("scenario", *file, "scenario file, also that of a run folder")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("frame", *frame, "index of the pair, as in frames.csv")->required()->type_name("N");
+  command->add_option("--seed", *seed, "in place of the scenario's")->type_name("S");
+  command->add_option("--out", *out, "folder to write to")->required()->type_name("DIR");
+  add_set(*command, *set, "set a key of the scenario; repeatable");
+  add_renderer(*command);
+  command->callback([=, &action] {
+    action = [=] {
+      sim::Scenario scenario = sim::load_scenario(*file, overrides_of(*set));
+      scenario.seed = seed->value_or(scenario.seed);
+      for (const std::string& written : export_frame(scenario, *frame, *out)) fmt::print("{}\n", written);
       return exit_code(Outcome::kPass);
     };
   });

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/cache/pair_cache.h"
 #include "sim/scenario/scenario.h"
 #include "slam/types/oracle.h"
 
@@ -25,6 +26,12 @@ using OracleStages = std::set<slam::OracleStage>;
 /// "tracking+stereo"; empty when nothing is replaced.
 std::string name_of(const OracleStages& stages);
 
+/// Where finished pairs are kept from run to run.
+struct CacheChoice {
+  std::string folder;  ///< empty: nowhere
+  uint64_t max_bytes = sim::kCacheBytes;
+};
+
 /// What `groundloop run` was asked for.
 struct RunOptions {
   std::vector<std::string> scenarios;  ///< scenario files, at least one
@@ -37,6 +44,7 @@ struct RunOptions {
   std::string junit;  ///< JUnit XML file to write; empty: none
   int jobs = 1;       ///< runs at the same time, at least 1
   bool json = false;  ///< the answer as JSON on stdout
+  CacheChoice cache;
 };
 
 /// What `groundloop oracles` was asked for.
@@ -48,6 +56,7 @@ struct OracleStudyOptions {
   std::string out;                 ///< parent of the run folders; empty: runs/NAME-SEED-oracles
   int jobs = 1;                    ///< runs at the same time, at least 1
   bool json = false;               ///< the answer as JSON on stdout
+  CacheChoice cache;
 };
 
 /// What `groundloop replay` was asked for.
@@ -68,6 +77,8 @@ struct ReplayOptions {
 struct JobControl {
   /// (name of the run, pairs done, pairs in all)
   std::function<void(const std::string& run, int64_t done, int64_t total)> progress;
+  /// A line about a run that is worth knowing before its end; may be empty.
+  std::function<void(const std::string& run, const std::string& line)> note;
   /// Becomes true when the job is to stop cleanly (Ctrl-C); never null.
   const std::atomic<bool>* stop = nullptr;
 };

@@ -60,11 +60,13 @@ std::vector<RunOutcome> oracle_study(const OracleStudyOptions& options, const Jo
   scenario.seed = options.seed.value_or(scenario.seed);
   const std::string name = fmt::format("{}-{}", scenario.name, scenario.seed);
   const std::string parent = options.out.empty() ? "runs/" + name + "-oracles" : options.out;
+  const std::unique_ptr<sim::PairCache> cache = open_cache(options.cache);
   std::vector<RunJob> jobs;
   for (const OracleStages& exact : variants()) {
-    jobs.push_back({scenario, options.frames, exact, parent + "/" + folder_name(exact)});
+    jobs.push_back({scenario, options.frames, exact, parent + "/" + folder_name(exact), cache.get()});
   }
   std::vector<RunOutcome> runs = run_all(jobs, options.jobs, control);
+  if (cache) cache->trim();
   const std::string& first = runs.front().folder;
   if (!first.empty()) {
     write_table(first + "/oracles.json", runs);

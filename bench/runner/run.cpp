@@ -58,6 +58,20 @@ std::string sha256_of_world(const sim::Scenario& scenario) {
   return generated ? sha256_of_text(*generated) : sha256_of_file(scenario.world.file);
 }
 
+std::string profile_name(sim::RenderProfile profile) {
+  for (const auto& [candidate, name] : EnumNames<sim::RenderProfile>::names) {
+    if (candidate == profile) return name;
+  }
+  return "";
+}
+
+/// What the pixels of a run depend on that no scenario says.
+std::string preflight_line(const sim::Scenario& scenario, const sim::RendererInfo& renderer) {
+  return fmt::format("{}, {}, {} sample{} a pixel, {}, profile {}", renderer.backend, renderer.renderer,
+                     std::max(renderer.samples, 1), renderer.samples > 1 ? "s" : "", instruction_set(),
+                     profile_name(scenario.render.profile));
+}
+
 RunHeader header_of(const sim::Scenario& scenario, const RunOutcome& outcome,
                     const sim::RendererInfo& renderer) {
   RunHeader header = run_header(outcome.verdict);
@@ -70,7 +84,8 @@ RunHeader header_of(const sim::Scenario& scenario, const RunOutcome& outcome,
   header.renderer = {{"backend", renderer.backend},
                      {"renderer", renderer.renderer},
                      {"version", renderer.version},
-                     {"samples", std::to_string(renderer.samples)}};
+                     {"samples", std::to_string(renderer.samples)},
+                     {"profile", profile_name(scenario.render.profile)}};
   header.hashes = {{"scenario", sha256_of_file(scenario.file)},
                    {"world", sha256_of_world(scenario)},
                    {"robot", sha256_of_file(scenario.robot.model)},
@@ -111,7 +126,7 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   const slam::SlamOptions options = slam_options(scenario);
   const sim::HeadModel head = sim::carried_head(scenario);
   const sim::World world = sim::World::load(scenario);
-  SimulatedSource source(scenario, world, head, job.frames);
+  SimulatedSource source(scenario, world, head, job.frames, job.cache);
   OutputFolder out(job.folder);
 
   // drive, see, process
@@ -140,6 +155,7 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   };
   RunOutcome outcome{scenario.name, scenario.seed, job.folder, 0, {}, {}, job.oracles};
   const std::string name = fmt::format("{}-{}", outcome.title(), scenario.seed);
+  if (control.note) control.note(name, preflight_line(scenario, source.renderer_info()));
   const CoreRun core_run =
       run_core(source, core, name, std::nullopt, observe, control, [&source] { source.abandon(); });
 
@@ -198,15 +214,23 @@ std::vector<RunOutcome> run(const RunOptions& options, const JobControl& control
   }
   if (!problems.empty()) throw InputError(problems);
 
+  const std::unique_ptr<sim::PairCache> cache = open_cache(options.cache);
   std::vector<RunJob> jobs;
   for (const sim::Scenario& scenario : scenarios) {
     std::string name = fmt::format("{}-{}", scenario.name, scenario.seed);
     if (!options.oracles.empty()) name += "-exact-" + name_of(options.oracles);
     std::string folder = options.out.empty() ? "runs/" + name : options.out;
     if (!options.out.empty() && scenarios.size() > 1) folder += "/" + name;
-    jobs.push_back({scenario, options.frames, options.oracles, folder});
+    jobs.push_back({scenario, options.frames, options.oracles, folder, cache.get()});
   }
-  return run_all(jobs, options.jobs, control);
+  std::vector<RunOutcome> outcomes = run_all(jobs, options.jobs, control);
+  if (cache) cache->trim();
+  return outcomes;
+}
+
+std::unique_ptr<sim::PairCache> open_cache(const CacheChoice& choice) {
+  if (choice.folder.empty()) return nullptr;
+  return std::make_unique<sim::PairCache>(choice.folder, choice.max_bytes);
 }
 
 std::vector<RunOutcome> run_all(const std::vector<RunJob>& jobs, int at_once, const JobControl& control) {
@@ -218,6 +242,12 @@ std::vector<RunOutcome> run_all(const std::vector<RunJob>& jobs, int at_once, co
     shared.progress = [&](const std::string& name, int64_t done, int64_t total) {
       const std::lock_guard lock(progress_mutex);
       control.progress(name, done, total);
+    };
+  }
+  if (control.note) {
+    shared.note = [&](const std::string& name, const std::string& line) {
+      const std::lock_guard lock(progress_mutex);
+      control.note(name, line);
     };
   }
   const auto work = [&] {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -30,11 +31,16 @@ struct RunJob {
   std::optional<int64_t> frames;  ///< only the first so many pairs
   OracleStages oracles;
   std::string folder;
+  sim::PairCache* cache = nullptr;  ///< finished pairs; null: all are rendered
 };
 
 /// Simulates one scenario, runs the core on what its head sees, judges it and writes the run folder.
 /// @throws InputError, Interrupted
 RunOutcome run_scenario(const RunJob& job, const JobControl& control);
+
+/// The cache that was chosen; null for none.
+/// @throws InputError when its folder cannot be made
+std::unique_ptr<sim::PairCache> open_cache(const CacheChoice& choice);
 
 /// Several, `at_once` at a time. A run that fails does not stop the others.
 /// @return in the order of the jobs

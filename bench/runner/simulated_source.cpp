@@ -1,14 +1,28 @@
 #include "bench/runner/simulated_source.h"
 
 #include <algorithm>
-#include <chrono>
+#include <future>
 #include <memory>
 #include <utility>
 
-#include "sim/faults/image_faults.h"
+#include "bench/runner/pair_key.h"
+#include "bench/runner/priority.h"
 
 namespace groundloop::bench {
 namespace {
+
+constexpr size_t kAhead = 6;          ///< pairs in the making, or waiting
+constexpr int64_t kPairsForTwo = 30;  ///< from which two threads render
+
+/// Mesa's own threads start with the first context of the process, and keep its thread's priority.
+sim::RendererInfo info_from_behind(const sim::RenderSettings& settings) {
+  return std::async(std::launch::async,
+                    [&] {
+                      stand_back();
+                      return sim::renderer_info(settings);
+                    })
+      .get();
+}
 
 /// What the core is told of the head: ideal, or as it will be rectified.
 slam::StereoRig told_rig(const sim::HeadModel& head, const std::optional<RawImages>& raw) {
@@ -21,7 +35,8 @@ slam::StereoRig told_rig(const sim::HeadModel& head, const std::optional<RawImag
 }  // namespace
 
 SimulatedSource::SimulatedSource(const sim::Scenario& scenario, const sim::World& world,
-                                 const sim::HeadModel& head, std::optional<int64_t> frames)
+                                 const sim::HeadModel& head, std::optional<int64_t> frames,
+                                 sim::PairCache* cache)
     : scenario_(scenario),
       world_(world),
       head_(head),
@@ -30,6 +45,11 @@ SimulatedSource::SimulatedSource(const sim::Scenario& scenario, const sim::World
       simulation_(world, head, scenario, [this](int64_t exposure) { return pose_of_exposure(exposure); }),
       arrivals_(sim::arrivals(scenario.faults, scenario.seed, simulation_.exposures(), head.period_ns())),
       size_(std::min(frames.value_or(INT64_MAX), static_cast<int64_t>(arrivals_.size()))),
+      renderer_info_(info_from_behind(scenario.render.settings())),
+      ingredients_{
+          world,    head,
+          scenario, raw_ ? &*raw_ : nullptr,
+          cache,    cache != nullptr ? run_key(world, head, scenario, renderer_info_) : sim::KeyBuilder()},
       truth_(static_cast<size_t>(size_)) {
   if (size_ > 0) return;
   throw InputError(Problem{scenario.file, scenario.faults.empty() ? 0 : scenario.faults.front().line,
@@ -57,16 +77,16 @@ std::optional<sim::Exposure> SimulatedSource::expose() {
   return simulation_.advance();
 }
 
-std::optional<SimulatedSource::Rendered> SimulatedSource::make_pair(sim::Renderer& renderer) {
-  if (made_ == size_) return std::nullopt;
-  const sim::Arrival& arrival = arrivals_[static_cast<size_t>(made_)];
-  Rendered pair;
-  slam::StereoFrame& frame = pair.frame;
-  frame.index = made_++;
+slam::Pose SimulatedSource::rectified(const slam::Pose& T_world_left) const {
+  return raw_ ? T_world_left * raw_->rectifier().T_raw_left() : T_world_left;
+}
 
-  const auto rectified = [this](const slam::Pose& T_world_left) {
-    return raw_ ? T_world_left * raw_->rectifier().T_raw_left() : T_world_left;
-  };
+/// The next pair that arrives; called by one maker at a time.
+std::optional<SimulatedSource::Order> SimulatedSource::order() {
+  if (ordered_ == size_) return std::nullopt;
+  const sim::Arrival& arrival = arrivals_[static_cast<size_t>(ordered_)];
+  Order order;
+  order.frame.index = ordered_++;
 
   // the exposures since the last pair, and the motion over all of them
   slam::Pose T_previous_left = slam::Pose::Identity();
@@ -78,86 +98,87 @@ std::optional<SimulatedSource::Rendered> SimulatedSource::make_pair(sim::Rendere
   }
   while (recent_.front().index < arrival.images_of) recent_.pop_front();
   const sim::Exposure& now = recent_.back();
-  const sim::Exposure& seen = recent_.front();
-  frame.stamp_ns = now.stamp_ns;
-  if (frame.index > 0) {
-    frame.T_previous_left = T_previous_left;
-    if (raw_) frame.T_previous_left = raw_->rectifier().T_raw_left().inverse() * rectified(T_previous_left);
+  order.seen = recent_.front();
+  order.frame.stamp_ns = now.stamp_ns;
+  if (order.frame.index > 0) {
+    order.frame.T_previous_left = T_previous_left;
+    if (raw_)
+      order.frame.T_previous_left = raw_->rectifier().T_raw_left().inverse() * rectified(T_previous_left);
   }
+  tell_truth(order, now);
+  return order;
+}
 
-  const auto start = std::chrono::steady_clock::now();
-  if (raw_) {
-    pair.light = raw_->light(seen, renderer);
-  } else {
-    render(seen, renderer, frame);
-  }
-  const std::chrono::duration<double, std::milli> render_ms = std::chrono::steady_clock::now() - start;
-
-  const int64_t before_ns = frame.index > 0 ? truth_[static_cast<size_t>(frame.index) - 1].stamp_ns : -1;
-  const std::string faults = sim::fault_label(scenario_.faults, before_ns, now.stamp_ns);
-  FrameTruth& truth = truth_[static_cast<size_t>(frame.index)];
+void SimulatedSource::tell_truth(const Order& order, const sim::Exposure& now) {
+  const auto index = static_cast<size_t>(order.frame.index);
+  const int64_t before_ns = index > 0 ? truth_[index - 1].stamp_ns : -1;
+  FrameTruth& truth = truth_[index];
   truth.stamp_ns = now.stamp_ns;
   truth.T_world_body = now.T_world_body;
   truth.T_world_left = rectified(now.T_world_left);
   truth.T_odom_body = now.T_odom_body;
-  truth.T_world_seen = rectified(seen.T_world_left);
-  truth.seen_ns = seen.stamp_ns;
-  truth.faults = faults;
-  truth.render_ms = render_ms.count();
-  return pair;
+  truth.T_world_seen = rectified(order.seen.T_world_left);
+  truth.seen_ns = order.seen.stamp_ns;
+  truth.faults = sim::fault_label(scenario_.faults, before_ns, now.stamp_ns);
 }
 
-void SimulatedSource::render(const sim::Exposure& exposure, sim::Renderer& renderer,
-                             slam::StereoFrame& frame) const {
-  renderer.update_scene(*exposure.state, exposure.lights);
-  renderer.render_grey({head_.focal_px, head_.cx_px, head_.cy_px, exposure.T_world_left}, frame.left);
-  if (exposure.state_right != exposure.state) renderer.update_scene(*exposure.state_right, exposure.lights);
-  renderer.render_grey({head_.focal_px, head_.cx_px, head_.cy_px, exposure.T_world_right}, frame.right);
-}
-
-/// What lens, light and sensor make of a rendered pair, and the cable of their order.
-void SimulatedSource::spoil(slam::StereoFrame& frame) const {
-  const sim::Arrival& arrival = arrivals_[static_cast<size_t>(frame.index)];
-  const double time_s = static_cast<double>(arrival.images_of * head_.period_ns()) * 1e-9;
-  for (const auto& [camera, image] : {std::pair(0, &frame.left), std::pair(1, &frame.right)}) {
-    sim::apply_image_faults(scenario_.faults, scenario_.seed, camera, time_s, *image);
-    sim::apply_sensor_noise(head_.noise, scenario_.seed, camera, arrival.images_of, *image);
+void SimulatedSource::start() {
+  exposures_.emplace([this] { return expose(); });
+  // A second maker costs a context with all textures: too much for a few pairs.
+  const bool two = PairMaker::in_any_order(head_) && size_ >= kPairsForTwo;
+  std::vector<OrderedPool<Order, Made>::Make> makers;
+  for (int i = 0; i < (two ? 2 : 1); ++i) {
+    makers.emplace_back([maker = std::make_shared<PairMaker>(ingredients_)](Order order) {
+      return Made{std::move(order.frame), maker->make(order.seen)};
+    });
   }
-  if (arrival.swapped) cv::swap(frame.left, frame.right);
-}
-
-/// From the light on the sensors to the rectified pair.
-void SimulatedSource::take_raw(Rendered& pair) {
-  const sim::Arrival& arrival = arrivals_[static_cast<size_t>(pair.frame.index)];
-  const sim::ExposureSetting setting = raw_->setting(arrival.images_of);
-  cv::Mat left, right;
-  raw_->read_out(pair.light, arrival.images_of, setting, left, right);
-  raw_->observe(left);
-  raw_->transfer(left, right, arrival.swapped, pair.frame);
-  truth_[static_cast<size_t>(pair.frame.index)].setting = setting;
+  pairs_.emplace([this] { return order(); }, std::move(makers), kAhead);
 }
 
 std::optional<slam::StereoFrame> SimulatedSource::next() {
-  if (!rendered_) {
-    exposures_.emplace([this] { return expose(); });
-    // A renderer lives and dies in the thread that uses it.
-    rendered_.emplace([this, renderer = std::shared_ptr<sim::Renderer>()]() mutable {
-      if (!renderer) {
-        const cv::Size size = raw_ ? raw_->view().size : cv::Size(head_.width_px, head_.height_px);
-        renderer = std::make_shared<sim::Renderer>(world_, size.width, size.height, scenario_.render);
-        renderer_info_ = renderer->info();
-      }
-      return make_pair(*renderer);
-    });
-  }
-  std::optional<Rendered> pair = rendered_->next();
-  if (!pair) return std::nullopt;
+  if (!pairs_) start();
+  std::optional<Made> made = pairs_->next();
+  if (!made) return std::nullopt;
+  return deliver(std::move(*made));
+}
+
+/// Notes what the maker tells, and sends the pair through the cable.
+slam::StereoFrame SimulatedSource::deliver(Made made) {
+  slam::StereoFrame frame = std::move(made.frame);
+  FrameTruth& truth = truth_[static_cast<size_t>(frame.index)];
+  truth.render_ms = made.pair.made_ms;
+  truth.setting = made.pair.setting;
+  rendered_ += made.pair.rendered ? 1 : 0;
+
+  const bool swapped = arrivals_[static_cast<size_t>(frame.index)].swapped;
   if (raw_) {
-    take_raw(*pair);
+    raw_->transfer(made.pair.left, made.pair.right, swapped, frame);
   } else {
-    spoil(pair->frame);
+    frame.left = swapped ? made.pair.right : made.pair.left;
+    frame.right = swapped ? made.pair.left : made.pair.right;
   }
-  return std::move(pair->frame);
+  return frame;
+}
+
+SimulatedSource::LonePair SimulatedSource::alone(int64_t index) {
+  exposures_.emplace([this] { return expose(); });
+  PairMaker maker(ingredients_);
+  LonePair lone;
+  while (std::optional<Order> now = order()) {
+    const bool wanted = now->frame.index == index;
+    if (now->frame.index > index) {
+      lone.next = std::move(now->seen);
+      lone.T_world_next = rectified(lone.next->T_world_left);
+      break;
+    }
+    if (!wanted && PairMaker::in_any_order(head_)) continue;
+    Made made{std::move(now->frame), maker.make(now->seen)};
+    if (!wanted) continue;
+    lone.frame = deliver(std::move(made));
+    lone.seen = std::move(now->seen);
+    lone.T_world_left = rectified(lone.seen.T_world_left);
+  }
+  return lone;
 }
 
 }  // namespace groundloop::bench

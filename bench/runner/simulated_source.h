@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "bench/runner/ahead.h"
+#include "bench/runner/ordered_pool.h"
+#include "bench/runner/pair_maker.h"
 #include "bench/runner/pose_channel.h"
 #include "bench/runner/raw_images.h"
 #include "sim/faults/arrivals.h"
@@ -30,13 +32,13 @@ struct FrameTruth {
       slam::Pose::Identity();  ///< left camera when the images were taken: T_world_left but for late pairs
   int64_t seen_ns = 0;         ///< when that was
   std::string faults;          ///< kinds active since the pair before, as "drop+blur" (sim/faults/arrivals.h)
-  double render_ms = 0;        ///< both images, read back
+  double render_ms = 0;        ///< both images, as the head delivers them: rendered, or found in the cache
   std::optional<sim::ExposureSetting> setting;  ///< of a raw head's left camera
 };
 
-/// The simulator as a source of stereo pairs. Physics and rendering run ahead, each in a thread of its own;
-/// image faults and sensor noise are added in next(). The truth of each pair goes past the core, into
-/// truth().
+/// The simulator as a source of stereo pairs. Physics runs ahead in a thread of its own, rendering in two:
+/// one prepares its triangles while Mesa's own threads fill those of the other. The truth of each pair goes
+/// past the core, into truth().
 ///
 /// The pairs of a raw head are rectified as the core is told; truth, planned motion and the poses to steer by
 /// are those of the rectified left camera.
@@ -46,9 +48,11 @@ struct FrameTruth {
 class SimulatedSource : public slam::StereoSource {
  public:
   /// @param frames  deliver only the first so many pairs
+  /// @param cache   where finished pairs are looked for and left; null: all are rendered. Must outlive the
+  /// source
   /// @throws InputError when the scenario's models do not fit together or its plan runs into something
   SimulatedSource(const sim::Scenario& scenario, const sim::World& world, const sim::HeadModel& head,
-                  std::optional<int64_t> frames);
+                  std::optional<int64_t> frames, sim::PairCache* cache = nullptr);
   ~SimulatedSource() override { abandon(); }
 
   const slam::StereoRig& rig() const override { return rig_; }
@@ -57,6 +61,18 @@ class SimulatedSource : public slam::StereoSource {
   /// before the last sim::kFeedbackPairs.
   std::optional<slam::StereoFrame> next() override;
 
+  /// A pair made alone, with the scene that it and the pair after it show.
+  struct LonePair {
+    slam::StereoFrame frame;
+    sim::Exposure seen;
+    slam::Pose T_world_left = slam::Pose::Identity();  ///< of the delivered left image
+    std::optional<sim::Exposure> next;                 ///< none after the last pair
+    slam::Pose T_world_next = slam::Pose::Identity();  ///< of its left image
+  };
+  /// Pair `index` and no other, in place of all calls of next(): the same bytes. Only a head with automatic
+  /// exposure makes the pairs before it, too, since its exposure follows from them.
+  LonePair alone(int64_t index);
+
   /// What the core said of the next pair, in order: the robot may steer by it.
   void steer_by(const slam::FrameResult& result);
   /// There will be no more results: whoever waits for one goes on without.
@@ -64,22 +80,29 @@ class SimulatedSource : public slam::StereoSource {
 
   /// Truth of pair `index`. May be read from another thread once that pair was delivered to it.
   const FrameTruth& truth(int64_t index) const { return truth_[static_cast<size_t>(index)]; }
-  /// Known once the first pair was delivered.
+  /// What makes the images that are not found in the cache.
   const sim::RendererInfo& renderer_info() const { return renderer_info_; }
+  /// Pairs delivered that were rendered, not found in the cache.
+  int64_t rendered() const { return rendered_; }
   const sim::Simulation& simulation() const { return simulation_; }
 
  private:
   std::optional<slam::Pose> pose_of_exposure(int64_t exposure);
   std::optional<sim::Exposure> expose();
-  /// A pair on its way from the renderer: an ideal head's images, or the light on a raw one's sensors.
-  struct Rendered {
-    slam::StereoFrame frame;
-    SensorLight light;
+  /// What a maker is told of a pair.
+  struct Order {
+    slam::StereoFrame frame;  ///< without images
+    sim::Exposure seen;       ///< whose images they are
   };
-  std::optional<Rendered> make_pair(sim::Renderer& renderer);
-  void render(const sim::Exposure& exposure, sim::Renderer& renderer, slam::StereoFrame& frame) const;
-  void spoil(slam::StereoFrame& frame) const;
-  void take_raw(Rendered& pair);
+  struct Made {
+    slam::StereoFrame frame;  ///< without images
+    PairMaker::Pair pair;
+  };
+  std::optional<Order> order();
+  void tell_truth(const Order& order, const sim::Exposure& now);
+  void start();
+  slam::StereoFrame deliver(Made made);
+  slam::Pose rectified(const slam::Pose& T_world_left) const;
 
   const sim::Scenario& scenario_;
   const sim::World& world_;
@@ -90,13 +113,15 @@ class SimulatedSource : public slam::StereoSource {
   sim::Simulation simulation_;
   const std::vector<sim::Arrival> arrivals_;
   const int64_t size_;
-  sim::RendererInfo renderer_info_;
+  const sim::RendererInfo renderer_info_;
+  const PairIngredients ingredients_;
   std::vector<FrameTruth> truth_;
   int64_t exposed_ = 0;
-  int64_t made_ = 0;
+  int64_t ordered_ = 0;
+  int64_t rendered_ = 0;
   std::deque<sim::Exposure> recent_;               ///< whose images may still arrive
   std::optional<Ahead<sim::Exposure>> exposures_;  ///< started by the first next()
-  std::optional<Ahead<Rendered>> rendered_;        ///< takes from exposures_, so it ends first
+  std::optional<OrderedPool<Order, Made>> pairs_;  ///< takes from exposures_, so it ends first
 };
 
 }  // namespace groundloop::bench

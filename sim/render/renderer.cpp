@@ -1,9 +1,14 @@
 #include "sim/render/renderer.h"
 
+#include <GL/gl.h>
+#include <GL/glext.h>
+
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <opencv2/core.hpp>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "sim/render/culling.h"
@@ -18,12 +23,12 @@ constexpr int kExtraGeoms = 1000;
 constexpr int kVisibleGroups = 3;
 
 /// The model with the drawing options of one renderer; shares all arrays with the world's.
-mjModel with_options(const mjModel& model, int width_px, int height_px, const RenderChoice& choice) {
+mjModel with_options(const mjModel& model, int width_px, int height_px, const RenderSettings& settings) {
   mjModel view = model;
   view.vis.global.offwidth = width_px;
   view.vis.global.offheight = height_px;
-  view.vis.quality.offsamples = choice.antialiasing;
-  if (!choice.shadows) view.vis.quality.shadowsize = 0;
+  view.vis.quality.offsamples = settings.antialiasing;
+  if (!settings.shadows) view.vis.quality.shadowsize = 0;
   return view;
 }
 
@@ -45,6 +50,19 @@ mjvOption geoms_only() {
   return option;
 }
 
+/// MuJoCo asks for trilinear filtering of everything.
+void set_filter(const GlContext& gl, const mjrContext& context, TextureFilter filter) {
+  if (filter == TextureFilter::kTrilinear) return;
+  const auto bind = gl.function<void(GLenum, GLuint)>("glBindTexture");
+  const auto set = gl.function<void(GLenum, GLenum, GLint)>("glTexParameteri");
+  for (int i = 0; i < context.ntexture; ++i) {
+    const GLenum kind = context.textureType[i] == mjTEXTURE_2D ? GL_TEXTURE_2D : GL_TEXTURE_CUBE_MAP;
+    bind(kind, context.texture[i]);
+    set(kind, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
+    bind(kind, 0);
+  }
+}
+
 void set_vector(float* to, const Eigen::Vector3d& from) {
   for (int i = 0; i < 3; ++i) to[i] = static_cast<float>(from[i]);
 }
@@ -52,13 +70,13 @@ void set_vector(float* to, const Eigen::Vector3d& from) {
 }  // namespace
 
 struct Renderer::Impl {
-  Impl(const World& world, int width, int height, const RenderChoice& choice)
+  Impl(const World& world, int width, int height, const RenderSettings& settings)
       : width_px(width),
         height_px(height),
-        model(with_options(world.model(), width, height, choice)),
+        model(with_options(world.model(), width, height, settings)),
         near_m(model.vis.map.znear * model.stat.extent),
         far_m(model.vis.map.zfar * model.stat.extent),
-        gl(make_osmesa_context()),
+        gl(make_gl_context()),
         option(geoms_only()),
         rgb(3 * static_cast<size_t>(width) * height) {
     mjv_defaultScene(&scene);
@@ -66,8 +84,9 @@ struct Renderer::Impl {
     mjv_makeScene(&model, &scene, model.ngeom + kExtraGeoms);
     mjr_makeContext(&model, &context, mjFONTSCALE_100);
     mjr_setBuffer(mjFB_OFFSCREEN, &context);
-    scene.flags[mjRND_SHADOW] = choice.shadows ? 1 : 0;
-    scene.flags[mjRND_REFLECTION] = choice.reflections ? 1 : 0;
+    set_filter(*gl, context, settings.textures);
+    scene.flags[mjRND_SHADOW] = settings.shadows ? 1 : 0;
+    scene.flags[mjRND_REFLECTION] = settings.reflections ? 1 : 0;
     scene.flags[mjRND_HAZE] = 0;
   }
 
@@ -159,6 +178,41 @@ struct Renderer::Impl {
     return mirrors;
   }
 
+  void need_single_samples(const char* what) const {
+    if (context.offSamples == 0) return;
+    throw std::logic_error(std::string("Renderer::") + what + " needs a renderer without antialiasing");
+  }
+
+  /// z along the optical axis from the depth buffer; rows top-down.
+  void metres(const cv::Mat& bottom_up, cv::Mat& depth_m) const {
+    depth_m.create(bottom_up.size(), CV_32FC1);
+    const double shrink = 1 - near_m / far_m;
+    for (int row = 0; row < depth_m.rows; ++row) {
+      const float* from = bottom_up.ptr<float>(depth_m.rows - 1 - row);
+      float* to = depth_m.ptr<float>(row);
+      for (int col = 0; col < depth_m.cols; ++col) {
+        to[col] = static_cast<float>(near_m / (1 - from[col] * shrink));
+      }
+    }
+  }
+
+  /// Geom ids from the colours that MuJoCo draws in place of them: the place in the scene, from 1.
+  void geom_ids(cv::Mat& geom) const {
+    std::vector<int> id_of(geoms.size() + 1, -1);
+    for (const mjvGeom& drawn : geoms) {
+      const auto colour = static_cast<size_t>(drawn.segid + 1);
+      if (drawn.objtype == mjOBJ_GEOM && colour < id_of.size()) id_of[colour] = drawn.objid;
+    }
+    geom.create(height_px, width_px, CV_32SC1);
+    for (int row = 0; row < height_px; ++row) {
+      const unsigned char* from = &rgb[3 * static_cast<size_t>(height_px - 1 - row) * width_px];
+      int* to = geom.ptr<int>(row);
+      for (int col = 0; col < width_px; ++col, from += 3) {
+        to[col] = id_of[from[0] + (static_cast<size_t>(from[1]) << 8) + (static_cast<size_t>(from[2]) << 16)];
+      }
+    }
+  }
+
   mjrRect viewport() const { return {0, 0, width_px, height_px}; }
 
   const int width_px, height_px;
@@ -172,8 +226,8 @@ struct Renderer::Impl {
   std::vector<unsigned char> rgb;  ///< as OpenGL delivers it: rows bottom-up
 };
 
-Renderer::Renderer(const World& world, int width_px, int height_px, const RenderChoice& choice)
-    : impl_(std::make_unique<Impl>(world, width_px, height_px, choice)) {}
+Renderer::Renderer(const World& world, int width_px, int height_px, const RenderSettings& settings)
+    : impl_(std::make_unique<Impl>(world, width_px, height_px, settings)) {}
 
 Renderer::~Renderer() = default;
 
@@ -209,26 +263,33 @@ void Renderer::render_bgr(const Camera& camera, cv::Mat& bgr) {
 }
 
 void Renderer::render_depth(const Camera& camera, cv::Mat& depth_m) {
-  if (impl_->context.offSamples > 0) {
-    throw std::logic_error("Renderer::render_depth needs a renderer without antialiasing");
-  }
+  impl_->need_single_samples("render_depth");
   impl_->render(camera);
   cv::Mat bottom_up(impl_->height_px, impl_->width_px, CV_32FC1);
   mjr_readPixels(nullptr, bottom_up.ptr<float>(), impl_->viewport(), &impl_->context);
-  depth_m.create(bottom_up.size(), CV_32FC1);
-  const double shrink = 1 - impl_->near_m / impl_->far_m;
-  for (int row = 0; row < depth_m.rows; ++row) {
-    const float* from = bottom_up.ptr<float>(depth_m.rows - 1 - row);
-    float* to = depth_m.ptr<float>(row);
-    for (int col = 0; col < depth_m.cols; ++col) {
-      to[col] = static_cast<float>(impl_->near_m / (1 - from[col] * shrink));
-    }
-  }
+  impl_->metres(bottom_up, depth_m);
+}
+
+void Renderer::render_truth(const Camera& camera, cv::Mat& depth_m, cv::Mat& geom) {
+  impl_->need_single_samples("render_truth");
+  impl_->scene.flags[mjRND_SEGMENT] = impl_->scene.flags[mjRND_IDCOLOR] = 1;
+  impl_->render(camera);
+  impl_->scene.flags[mjRND_SEGMENT] = impl_->scene.flags[mjRND_IDCOLOR] = 0;
+  cv::Mat bottom_up(impl_->height_px, impl_->width_px, CV_32FC1);
+  mjr_readPixels(impl_->rgb.data(), bottom_up.ptr<float>(), impl_->viewport(), &impl_->context);
+  impl_->metres(bottom_up, depth_m);
+  impl_->geom_ids(geom);
+  depth_m.setTo(std::numeric_limits<float>::infinity(), geom < 0);
 }
 
 RendererInfo Renderer::info() const {
   impl_->gl->make_current();
   return {impl_->gl->backend(), impl_->gl->renderer(), impl_->gl->version(), impl_->context.offSamples};
+}
+
+RendererInfo renderer_info(const RenderSettings& settings) {
+  const std::unique_ptr<GlContext> gl = make_gl_context();
+  return {gl->backend(), gl->renderer(), gl->version(), gl->samples_for(settings.antialiasing)};
 }
 
 }  // namespace groundloop::sim

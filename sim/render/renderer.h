@@ -4,8 +4,7 @@
 #include <opencv2/core/mat.hpp>
 #include <string>
 
-#include "sim/head/head.h"
-#include "sim/scenario/scenario.h"
+#include "sim/scenario/render_choice.h"
 #include "sim/world/lighting.h"
 #include "sim/world/world.h"
 #include "slam/types/pose.h"
@@ -14,17 +13,22 @@ namespace groundloop::sim {
 
 /// What the renderer is, for run.json and the preflight line.
 struct RendererInfo {
-  std::string backend;   ///< "OSMesa"
+  std::string backend;   ///< "OSMesa" or "EGL surfaceless"
   std::string renderer;  ///< GL_RENDERER, names llvmpipe, LLVM version and vector width
   std::string version;   ///< GL_VERSION
   int samples = 0;       ///< what was given, not what was asked for
+
+  bool operator==(const RendererInfo&) const = default;
 };
+
+/// What a renderer with these settings would be, without making one.
+RendererInfo renderer_info(const RenderSettings& settings);
 
 /// Off-screen renderer with exact intrinsics (free principal point, no head-light). One OpenGL context, to be
 /// used by the thread that made it.
 class Renderer {
  public:
-  Renderer(const World& world, int width_px, int height_px, const RenderChoice& choice);
+  Renderer(const World& world, int width_px, int height_px, const RenderSettings& settings);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
@@ -45,6 +49,10 @@ class Renderer {
   /// Renders z along the optical axis [m] (CV_32FC1); the far plane where there is nothing. Needs
   /// `antialiasing: 0`, since MuJoCo resolves multisampled depth by picking a sample.
   void render_depth(const Camera& camera, cv::Mat& depth_m);
+  /// What each pixel truly shows: depth as above, but infinite where there is nothing, and the geom's id
+  /// (CV_32SC1, -1 where there is nothing), in one pass without lights or textures. What is transparent is
+  /// seen like anything else. Needs `antialiasing: 0`.
+  void render_truth(const Camera& camera, cv::Mat& depth_m, cv::Mat& geom);
 
   RendererInfo info() const;
 

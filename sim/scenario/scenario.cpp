@@ -209,11 +209,6 @@ void Plan::check(ConfigReader& reader) const {
   }
 }
 
-void RenderChoice::check(ConfigReader& reader) const {
-  if (antialiasing != 0 && antialiasing != 2 && antialiasing != 4)
-    reader.problem("antialiasing", "one of: 0, 2, 4");
-}
-
 void Expectation::check(ConfigReader& reader) const {
   if (!min && !max) reader.problem("", "bounds: min and/or max");
   if (min && max && *min > *max) reader.problem("", fmt::format("min ({}) not above max ({})", *min, *max));

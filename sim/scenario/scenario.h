@@ -12,6 +12,7 @@
 #include "sim/scenario/fault.h"
 #include "sim/scenario/metric_names.h"
 #include "sim/scenario/recipe.h"
+#include "sim/scenario/render_choice.h"
 #include "sim/scenario/scenery.h"
 #include "slam/types/config.h"
 
@@ -174,21 +175,6 @@ struct Plan {
     a("generate", generate, {.doc = "straights and arcs through the world, drawn from a seed"});
     a("poses", poses, {.doc = "stops of a camera that an arm carries, one after the other"});
     a("path", path, {.doc = "the same, along a line"});
-  }
-  void check(ConfigReader& reader) const;
-};
-
-/// How images are made. Every combination gives the same bytes in every run.
-struct RenderChoice {
-  int antialiasing = 4;     ///< multisamples: 0 (none), 2 or 4
-  bool reflections = true;  ///< MuJoCo reflects in one geom of the scene
-  bool shadows = false;
-
-  template <class Archive>
-  void visit(Archive& a) {
-    a("antialiasing", antialiasing, {.min = 0, .max = 4, .doc = "samples a pixel: 0, 2 or 4"});
-    a("reflections", reflections);
-    a("shadows", shadows);
   }
   void check(ConfigReader& reader) const;
 };

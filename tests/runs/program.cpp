@@ -32,6 +32,7 @@ pid_t start(const std::vector<std::string>& arguments, const std::string& out, c
     dup2(i, STDIN_FILENO);
     dup2(o, STDOUT_FILENO);
     dup2(e, STDERR_FILENO);
+    setenv("GROUNDLOOP_CACHE", "off", 0);  // what is tested is made anew
     execv(argv[0], argv.data());
     _exit(127);
   }

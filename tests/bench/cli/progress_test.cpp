@@ -83,6 +83,14 @@ TEST(ProgressBar, EveryFinishedRunLeavesOneLine) {
   EXPECT_EQ(shown.take(), "\r\x1b[Klab-1: 10 pairs in 0:05\n");
 }
 
+TEST(ProgressBar, NotesHaveLinesOfTheirOwn) {
+  Shown shown(true);
+  shown.progress.update("lab-1", 0, 100);
+  shown.take();
+  shown.progress.note("lab-1", "drawn by hand");
+  EXPECT_EQ(shown.take(), "\r\x1b[Klab-1: drawn by hand\n");
+}
+
 TEST(ProgressBar, IsClearedWhenTheJobStops) {
   std::ostringstream out;
   {

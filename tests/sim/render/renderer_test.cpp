@@ -12,6 +12,8 @@
 #include <opencv2/core.hpp>
 #include <thread>
 
+#include "slam/types/stereo_rig.h"
+
 namespace groundloop::sim {
 namespace {
 
@@ -28,7 +30,7 @@ World world_of(const std::string& body) {
   return world;
 }
 
-RenderChoice choice(int antialiasing, bool reflections = false, bool shadows = false) {
+RenderSettings choice(int antialiasing, bool reflections = false, bool shadows = false) {
   return {.antialiasing = antialiasing, .reflections = reflections, .shadows = shadows};
 }
 
@@ -40,7 +42,7 @@ Renderer::Camera camera_at(const Eigen::Vector3d& p_world, double yaw_deg = 0, d
   return camera;
 }
 
-cv::Mat grey_of(const World& world, const Renderer::Camera& camera, const RenderChoice& how) {
+cv::Mat grey_of(const World& world, const Renderer::Camera& camera, const RenderSettings& how) {
   Renderer renderer(world, kWidth_px, kHeight_px, how);
   renderer.update_scene(*world.make_data());
   cv::Mat grey;
@@ -141,6 +143,7 @@ TEST(Renderer, SaysWhatItIs) {
   const World world = world_of("<geom size='1'/>");
   for (const int samples : {0, 2, 4}) {
     const RendererInfo info = Renderer(world, 64, 48, choice(samples)).info();
+    EXPECT_EQ(info, renderer_info(choice(samples)));  // known without making a renderer
     EXPECT_EQ(info.backend, "OSMesa");
     EXPECT_THAT(info.renderer, ::testing::HasSubstr("llvmpipe"));
     EXPECT_THAT(info.version, ::testing::HasSubstr("Mesa"));

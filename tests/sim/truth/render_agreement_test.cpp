@@ -120,7 +120,7 @@ Agreement compare_images(const World& world, const std::vector<Pose>& T_world_le
   const StereoRig rig = vga_rig();
   const auto data = world.make_data();
   const TruthWorld truth(world, *data);
-  RenderChoice choice;
+  RenderSettings choice;
   choice.antialiasing = 0;
   Renderer renderer(world, rig.width_px, rig.height_px, choice);
   renderer.update_scene(*data);
