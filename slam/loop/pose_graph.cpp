@@ -4,7 +4,6 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "slam/adjustment/relative_pose.h"
@@ -77,13 +76,6 @@ class NormalEquations {
     analysed_ = true;
     factor_.factorize(H_);
     return factor_.info() == Eigen::Success;
-  }
-
-  /// Six columns of the covariance of all free nodes, after factorise(); zero for a fixed node.
-  Eigen::MatrixXd covariance(int row) const {
-    Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(g_.size(), 6);
-    if (row >= 0) unit.middleRows<6>(row).setIdentity();
-    return factor_.solve(unit);
   }
 
  private:
@@ -181,23 +173,6 @@ PoseGraphSolution solve_pose_graph(const std::vector<Pose>& T_map_node, const st
   }
   best.usable = true;
   return best;
-}
-
-Matrix6d relative_covariance(const PoseGraphSolution& solution, const std::vector<bool>& fixed,
-                             const std::vector<PoseGraphEdge>& edges, int from, int to) {
-  PoseGraphSolution accepted = solution;
-  for (double& weight : accepted.weight) weight = weight < kRejected ? 0 : 1;
-  const auto [row, unknowns] = rows_of(fixed);
-  if (unknowns == 0 || from == to) return Matrix6d::Zero();
-  NormalEquations equations(row, unknowns, edges);
-  equations.linearise(accepted);
-  if (!equations.factorise(0)) return Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
-  const Eigen::MatrixXd by_from = equations.covariance(row[from]), by_to = equations.covariance(row[to]);
-  const auto block = [&](const Eigen::MatrixXd& columns, int node) -> Matrix6d {
-    return row[node] < 0 ? Matrix6d::Zero() : Matrix6d(columns.middleRows<6>(row[node]));
-  };
-  const Pose T_from_to = solution.T_map_node[from].inverse() * solution.T_map_node[to];
-  return relative_pose_covariance(T_from_to, block(by_from, from), block(by_to, from), block(by_to, to));
 }
 
 }  // namespace groundloop::slam

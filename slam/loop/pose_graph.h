@@ -37,10 +37,4 @@ struct PoseGraphSolution {
 PoseGraphSolution solve_pose_graph(const std::vector<Pose>& T_map_node, const std::vector<bool>& fixed,
                                    const std::vector<PoseGraphEdge>& edges);
 
-/// What a solved graph knows of T_from_to, two nodes of one connected part: covariance of a right
-/// perturbation in `to`, all other nodes integrated out. Edges count in full, rejected ones not at all.
-/// @param solution  of the same graph, usable
-Matrix6d relative_covariance(const PoseGraphSolution& solution, const std::vector<bool>& fixed,
-                             const std::vector<PoseGraphEdge>& edges, int from, int to);
-
 }  // namespace groundloop::slam

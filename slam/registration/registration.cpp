@@ -118,7 +118,7 @@ double Registration::misfit2_px(const PointPair& pair, const Pose& T_to_from) co
 }
 
 Pose Registration::robust_start(const std::vector<PointPair>& pairs, const Pose& predicted_T_to_from,
-                                uint64_t seed) const {
+                                uint64_t seed) {
   const double gate2 = options_.inlier_gate_px * options_.inlier_gate_px;
   const auto score = [&](const Pose& T_to_from, double least) {
     // Truncated cost, so that of two motions with as many inliers the tighter one wins.
@@ -132,8 +132,7 @@ Pose Registration::robust_start(const std::vector<PointPair>& pairs, const Pose&
 
   Pose best = predicted_T_to_from;
   double least = score(best, std::numeric_limits<double>::infinity());
-  std::vector<Eigen::Vector3d> a(3), b(3);
-  const std::vector<double> ones(3, 1.0);
+  std::vector<Eigen::Vector3d>&a = sample_from_, &b = sample_to_;
   const auto n = static_cast<uint32_t>(pairs.size());
   for (int k = 0; k < options_.ransac_iterations; ++k) {
     uint32_t pick[3];
@@ -145,7 +144,7 @@ Pose Registration::robust_start(const std::vector<PointPair>& pairs, const Pose&
     if (pick[0] == pick[1] || pick[0] == pick[2] || pick[1] == pick[2]) continue;
     const double area = (a[1] - a[0]).cross(a[2] - a[0]).norm();
     if (area < 1e-2 * (a[1] - a[0]).norm() * (a[2] - a[0]).norm()) continue;
-    const Pose candidate = weighted_rigid(a, b, ones);
+    const Pose candidate = weighted_rigid(a, b, equal_weights_);
     const double cost = score(candidate, least);
     if (cost < least) {
       least = cost;

@@ -80,8 +80,7 @@ class Registration {
 
  private:
   /// Best of the prediction and the sampled motions, by the number of pairs within the gate.
-  Pose robust_start(const std::vector<PointPair>& pairs, const Pose& predicted_T_to_from,
-                    uint64_t seed) const;
+  Pose robust_start(const std::vector<PointPair>& pairs, const Pose& predicted_T_to_from, uint64_t seed);
   int refine_scalar(const std::vector<PointPair>& pairs, Pose& T_to_from);
   int refine_reprojection(const std::vector<PointPair>& pairs, Pose& T_to_from);
   Matrix6d information(const std::vector<PointPair>& pairs, const Pose& T_to_from, Vector6d* gradient) const;
@@ -90,6 +89,8 @@ class Registration {
 
   StereoRig rig_;
   RegistrationOptions options_;
+  std::vector<Eigen::Vector3d> sample_from_{3}, sample_to_{3};  ///< of three pairs
+  std::vector<double> equal_weights_{1, 1, 1};
   std::vector<Eigen::Vector3d> p_from_, p_to_;
   std::vector<double> variance_, weight_;
 };
