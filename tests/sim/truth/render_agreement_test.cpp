@@ -10,6 +10,7 @@
 #include <opencv2/core.hpp>
 
 #include "sim/render/renderer.h"
+#include "sim/truth/image_truth.h"
 #include "sim/truth/truth_world.h"
 #include "tests/sim/truth/scene.h"
 
@@ -169,6 +170,35 @@ TEST(RenderAgreement, EveryGeomType) {
   EXPECT_GT(sum.compared, 500000);
   EXPECT_EQ(sum.far, 0);
   EXPECT_LT(sum.worst_m, 5e-4);
+}
+
+/// Pixels away from edges whose geom is another one by rays than in the rendered image; counts those
+/// compared.
+int other_geoms(const World& world, const Pose& T_world_left, int& compared) {
+  const StereoRig rig = vga_rig();
+  const auto data = world.make_data();
+  ImageTruth rendered{
+      rig.fx_px, rig.cx_px, rig.cy_px, T_world_left, {}, {}, geom_poses(world.model(), *data)};
+  ImageTruth cast = rendered;
+  Renderer renderer(world, rig.width_px, rig.height_px, {.antialiasing = 0});
+  renderer.update_scene(*data);
+  renderer.render_truth({rig.fx_px, rig.cx_px, rig.cy_px, T_world_left}, rendered.depth_m, rendered.geom);
+  cast_image_truth(TruthWorld(world, *data), rendered.depth_m.size(), cast);
+  cv::Mat depth_m;
+  renderer.render_depth({rig.fx_px, rig.cx_px, rig.cy_px, T_world_left}, depth_m);
+  EXPECT_EQ(cv::norm(depth_m, rendered.depth_m, cv::NORM_INF), 0);  // one pass or two
+  const cv::Mat1b edges = near_edges(depth_m);
+  compared += cv::countNonZero(edges == 0);
+  return cv::countNonZero((edges == 0) & (rendered.geom != cast.geom));
+}
+
+TEST(RenderAgreement, GeomIdsOfEveryPixel) {
+  const World lab = World::load_file("models/worlds/lab.xml");
+  int compared = 0;
+  // Pictures and panels lie flat on what they hang on, by less than an edge shows.
+  EXPECT_LT(other_geoms(lab, look({-3, -2.3, 0.35}, 0.4), compared), 0.002 * 640 * 480);
+  EXPECT_LT(other_geoms(lab, look({3.5, 2, 1.2}, 3.6, 0.1), compared), 0.002 * 640 * 480);
+  EXPECT_GT(compared, 450000);
 }
 
 TEST(RenderAgreement, Laboratory) {
