@@ -57,8 +57,14 @@ void render_all(benchmark::State& state, const World& world, const RenderSetting
       benchmark::Counter(static_cast<double>(kPairs), benchmark::Counter::kIsIterationInvariantRate);
 }
 
+RenderSettings settings_of(RenderProfile profile) {
+  RenderChoice choice;
+  choice.profile = profile;
+  return choice.settings();
+}
+
 void laboratory(benchmark::State& state, RenderProfile profile) {
-  render_all(state, drive().world, RenderChoice{.profile = profile}.settings());
+  render_all(state, drive().world, settings_of(profile));
 }
 BENCHMARK_CAPTURE(laboratory, fast, RenderProfile::kFast)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(laboratory, standard, RenderProfile::kStandard)
@@ -74,7 +80,7 @@ void nothing(benchmark::State& state, RenderProfile profile) {
   std::ofstream(file) << "<mujoco><worldbody><geom size='0.01' pos='0 0 -9'/></worldbody></mujoco>";
   const World world = World::load_file(file.string());
   std::filesystem::remove(file);
-  render_all(state, world, RenderChoice{.profile = profile}.settings());
+  render_all(state, world, settings_of(profile));
 }
 BENCHMARK_CAPTURE(nothing, fast, RenderProfile::kFast)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(nothing, standard, RenderProfile::kStandard)->Unit(benchmark::kMillisecond)->UseRealTime();
