@@ -144,7 +144,7 @@ seed: -3
           "folder",
           "test.yaml:3: world: models/rome.xml: wanted an MJCF file that exists (looked for " +
               (folder_ / "models" / "rome.xml").string() + ")",
-          "test.yaml:4: robot.strat: unknown key: wanted one of: drive, model, odometry, start (did you "
+          "test.yaml:4: robot.strat: unknown key: wanted one of: arm, drive, model, odometry, start (did you "
           "mean start?)",
           "test.yaml:7: plan.speed_mps: fast: wanted a number from 0.01 to 1.2",
           "test.yaml:8: plan.feedback: gps: wanted one of: plan, odometry, slam, truth",
@@ -340,7 +340,7 @@ TEST_F(ScenarioFiles, ABadOverrideIsNamedAsOne) {
                        {"plan.segments", "[{straight_m: }"}}),
       ElementsAre("--set: plan.speed_mps: fast: wanted a number from 0.01 to 1.2",
                   "--set: plan.sped_mps: unknown key: wanted one of: feedback, generate, "
-                  "look_speed_degps, segments, speed_mps, turn_rate_limit_degps (did you mean speed_mps?)",
+                  "look_speed_degps, path, poses, segments, speed_mps, turn_rate_limit_degps (did you mean speed_mps?)",
                   AllOf(HasSubstr("--set: expect.map.f2: unknown key"), EndsWith("(did you mean map.f1?)")),
                   HasSubstr("--set: plan.segments: [{straight_m: }: wanted valid YAML"),
                   HasSubstr("--set: world: nowhere.xml: wanted an MJCF file that exists")));
