@@ -36,6 +36,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -141,11 +143,10 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   const auto observe = [&](const slam::StereoFrame& frame, const slam::FrameResult& result) {
     source.steer_by(result);
     const FrameTruth& truth = source.truth(frame.index);
-    const StageErrors errors = judge.observe(frame, result);
-    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    judge.observe(frame, result);
     notes.push_back({.render_ms = truth.render_ms,
-                     .disparity_error_px = errors.disparity_px.rmse().value_or(kUnknown),
-                     .track_error_px = errors.track_px.rmse().value_or(kUnknown),
+                     .disparity_error_px = kUnknown,
+                     .track_error_px = kUnknown,
                      .position_error_m = kUnknown,
                      .memory_mb = memory_mb(),
                      .faults = truth.faults,
@@ -163,6 +164,8 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   const RunJudgement judged = judge.judge(core_run.frames);
   std::vector<double> render_ms;
   for (size_t i = 0; i < notes.size(); ++i) {
+    notes[i].disparity_error_px = judged.stages[i].disparity_px.rmse().value_or(kUnknown);
+    notes[i].track_error_px = judged.stages[i].track_px.rmse().value_or(kUnknown);
     notes[i].position_error_m = judged.position_error_m[i];
     render_ms.push_back(notes[i].render_ms);
   }

@@ -39,18 +39,25 @@ RunJudge::RunJudge(SceneInTime& scene, const SimulatedSource& source, const slam
       core_(core),
       sight_(scene.standing(), source.rig()),
       stages_(scene.seen(), source.rig()),
-      exact_(scene, source.rig(), core.options().mapping.cell_m) {}
+      exact_(scene, source.rig(), core.options().mapping.cell_m),
+      looking_([this](const Seen& seen) { look(seen); }) {}
 
-StageErrors RunJudge::observe(const slam::StereoFrame& frame, const slam::FrameResult& result) {
+void RunJudge::observe(const slam::StereoFrame& frame, const slam::FrameResult& result) {
   const FrameTruth& truth = source_.truth(frame.index);
-  if (scene_.move_to(static_cast<double>(truth.seen_ns) * 1e-9)) exact_.look_again();
-  exact_.look(frame.index, truth.T_world_seen);
   recovery_.observe({result, frame.T_previous_left, truth.T_world_left}, [this] { return mapped_views(); });
-  return stages_.judge(result, truth.T_world_seen);
+  looking_.give({result, static_cast<double>(truth.seen_ns) * 1e-9, truth.T_world_seen});
 }
 
-RunJudgement RunJudge::judge(const std::vector<slam::FrameResult>& frames) const {
+void RunJudge::look(const Seen& seen) {
+  if (scene_.move_to(seen.time_s)) exact_.look_again();
+  exact_.look(seen.result.index, seen.T_world_left);
+  stage_errors_.push_back(stages_.judge(seen.result, seen.T_world_left));
+}
+
+RunJudgement RunJudge::judge(const std::vector<slam::FrameResult>& frames) {
+  looking_.finish();
   RunJudgement run;
+  run.stages = stage_errors_;
   run.truth = left_truth(source_, frames.size());
   PosePairs pairs{run.truth, core_.trajectory()};
   run.metrics = trajectory_metrics(pairs);

@@ -75,7 +75,11 @@ LoopKeyFrame make_key_frame(const StereoRig& rig, int64_t index, const cv::Mat& 
                             const DetectionOptions& detection) {
   DenseDisparity dense(DisparityOptions{});
   dense.compute(left, right);
-  LoopKeyFrame key_frame{index, left, right, dense.half_resolution(), {}};
+  LoopKeyFrame key_frame;
+  key_frame.index = index;
+  key_frame.left = left;
+  key_frame.right = right;
+  key_frame.half_disparity = dense.half_resolution();
   ImagePyramid left_pyramid, right_pyramid;
   left_pyramid.build(left, kKlt.levels);
   right_pyramid.build(right, kKlt.levels);
