@@ -152,6 +152,42 @@ TEST(Documents, ExplainEveryKeyOfAHead) {
   expect_explained(keys_of(sim::HeadModel{}), "docs/scenario-format.md");
 }
 
+/// In docs/scenarios.md a scenario has a heading and the picture that `groundloop preview` drew of it, a
+/// fault has a row that begins with a link to its file.
+TEST(Documents, ShowEveryScenario) {
+  const std::string text = tree_text("docs/scenarios.md");
+  const auto expect_said = [&text](const std::string& wanted) {
+    EXPECT_NE(text.find(wanted), std::string::npos) << "docs/scenarios.md does not hold " << wanted;
+  };
+  size_t scenarios = 0, faults = 0;
+  for (const fs::path& file : tree_files("scenarios", {".yaml"})) {
+    const std::string name = file.stem().string();
+    if (file.parent_path() == "scenarios/faults") {
+      ++faults;
+      expect_said("\n| [" + name + "](../" + file.generic_string() + ") |");
+      continue;
+    }
+    ++scenarios;
+    const std::string picture = "pictures/scenarios/" + name + ".png";
+    EXPECT_TRUE(fs::exists(fs::path(GROUNDLOOP_ROOT) / "docs" / picture)) << picture << " is missing";
+    expect_said("\n### " + name + "\n");
+    expect_said("](" + picture + ")");
+  }
+  EXPECT_GT(scenarios, 10U);
+  EXPECT_GT(faults, 10U);
+  EXPECT_EQ(tree_files("docs/pictures/scenarios", {".png"}).size(), scenarios) << "a picture of no scenario";
+}
+
+TEST(Scenarios, SayWhatTheyAreAndWhatMustComeOut) {
+  for (const fs::path& file : tree_files("scenarios", {".yaml"})) {
+    const YAML::Node scenario = YAML::Load(tree_text(file));
+    const YAML::Node summary = scenario["summary"], expect = scenario["expect"];
+    EXPECT_TRUE(summary.IsDefined() && summary.IsScalar() && !summary.Scalar().empty())
+        << file << " has no summary";
+    EXPECT_TRUE(expect.IsDefined() && expect.IsMap() && expect.size() > 0) << file << " expects nothing";
+  }
+}
+
 /// Dotted name to value, lists as "a, b".
 void flatten(const YAML::Node& node, const std::string& path, std::map<std::string, std::string>& values) {
   if (node.IsMap()) {
