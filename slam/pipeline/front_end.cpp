@@ -47,7 +47,7 @@ const RegistrationResult& FrontEnd::follow(const StereoFrame& frame, const Pose&
     return registered_;
   }
   const int expected = expected_in_view(T_kf_predicted);
-  tracker_.track(left_, right_, T_kf_previous, T_kf_predicted);
+  tracker_.track(left_, right_, T_kf_previous, T_kf_predicted, frame.T_previous_left.has_value());
   align(T_kf_predicted);
 
   // The plan was far off, or there is none: let the whole image say how the camera turned.

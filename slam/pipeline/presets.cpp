@@ -7,6 +7,7 @@ namespace {
 SlamOptions paper() {
   SlamOptions options;
   options.tracking.max_features = 400;
+  options.tracking.planned_start_level = 1;
   options.tracking.hold_lost_s = 0;
   options.tracking.min_kept_ratio = 0;
   options.klt.max_sigma_px = 0.3;

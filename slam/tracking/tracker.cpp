@@ -6,6 +6,7 @@ namespace groundloop::slam {
 namespace {
 
 constexpr double kMinDepth_m = 0.05;
+constexpr float kNear_px = 1;
 
 Eigen::Vector2f left_of(const Eigen::Vector3d& uvu) { return uvu.head<2>().cast<float>(); }
 Eigen::Vector2f right_of(const Eigen::Vector3d& uvu) {
@@ -27,7 +28,8 @@ Tracker::Tracker(const StereoRig& rig, const TrackingOptions& options, const Klt
     : rig_(rig), options_(options), klt_(klt), matcher_(matcher) {}
 
 void Tracker::track(const ImagePyramid& left, const ImagePyramid& right, const Pose& T_kf_previous,
-                    const Pose& T_kf_left) {
+                    const Pose& T_kf_left, bool planned) {
+  const int start_level = planned ? options_.planned_start_level : options_.start_level;
   const Pose T_previous_kf = T_kf_previous.inverse(), T_left_kf = T_kf_left.inverse();
   for (Feature& feature : features_) {
     const Eigen::Vector3d p_previous = T_previous_kf * feature.p_kf;
@@ -48,7 +50,7 @@ void Tracker::track(const ImagePyramid& left, const ImagePyramid& right, const P
     const Eigen::Matrix2f change = shape_change(T_left_kf * T_kf_previous, p_previous.z() / p_left.z());
     start_left.A = change * feature.left.A;
     start_right.A = change * feature.right.A;
-    track_one(left, right, start_left, start_right, feature);
+    track_one(left, right, start_left, start_right, start_level, feature);
   }
 }
 
@@ -66,29 +68,34 @@ void Tracker::track_again(const ImagePyramid& left, const ImagePyramid& right, c
     start.uv_px = left_of(now);
     AffineState start_right = start;
     start_right.uv_px = right_of(now);
-    track_one(left, right, start, start_right, feature);
+    track_one(left, right, start, start_right, options_.start_level, feature);
   }
 }
 
 void Tracker::track_one(const ImagePyramid& left, const ImagePyramid& right, const AffineState& start_left,
-                        const AffineState& start_right, Feature& feature) const {
+                        const AffineState& start_right, int start_level, Feature& feature) const {
   const PatchTemplate& patch = first_view(feature);
   feature.in_right = false;
-  feature.in_left = find(patch, left, start_left, feature.left);
+  feature.in_left = find(patch, left, start_left, start_level, feature.left);
   if (!feature.in_left) return;
-  feature.in_right = find(patch, right, start_right, feature.right) &&
+  feature.in_right = find(patch, right, start_right, start_level, feature.right) &&
                      matcher_.plausible(feature.left.uv_px, feature.right.uv_px);
 }
 
 bool Tracker::find(const PatchTemplate& patch, const ImagePyramid& image, const AffineState& start,
-                   AffineState& state) const {
-  state = start;
-  if (track_affine(patch, image, klt_, options_.start_level, state) == KltStatus::kTracked) return true;
-  state = start;
-  if (options_.start_level + 1 < patch.levels &&
-      track_affine(patch, image, klt_, patch.levels - 1, state) == KltStatus::kTracked) {
+                   int start_level, AffineState& state) const {
+  const auto found_from = [&](int level) {
+    state = start;
+    return track_affine(patch, image, klt_, level, state) == KltStatus::kTracked;
+  };
+  // The finest level alone is for what is where it was expected: from farther away it may stop before it is
+  // there.
+  const bool found = found_from(start_level);
+  const bool near = start_level > 0 || (state.uv_px - start.uv_px).norm() < kNear_px;
+  if (found && near) return true;
+  if (start_level < options_.start_level && found_from(options_.start_level)) return true;
+  if (std::max(start_level, options_.start_level) + 1 < patch.levels && found_from(patch.levels - 1))
     return true;
-  }
   state = start;
   return false;
 }

@@ -15,9 +15,10 @@ namespace groundloop::slam {
 
 /// Options of tracking. YAML: slam.tracking
 struct TrackingOptions {
-  int max_features = 460;    ///< aimed at after every key frame in 640 x 480 px, more in a larger image
-  int start_level = 1;       ///< coarsest pyramid level searched first; all levels are tried when it fails
-  double hold_lost_s = 0.45;  ///< time without a pose that is waited for before a new segment is started
+  int max_features = 460;       ///< aimed at after every key frame in 640 x 480 px, more in a larger image
+  int start_level = 1;          ///< coarsest pyramid level searched first; all levels are tried when it fails
+  int planned_start_level = 0;  ///< the same where the robot told its motion
+  double hold_lost_s = 0.45;    ///< time without a pose that is waited for before a new segment is started
 
   double min_kept_ratio = 0.3;  ///< agreeing features, of those that should be in view; fewer: lost
 
@@ -26,6 +27,7 @@ struct TrackingOptions {
     a("min_kept_ratio", min_kept_ratio, {.min = 0, .max = 1});
     a("max_features", max_features, {.min = 20, .max = 5000});
     a("start_level", start_level, {.min = 0, .max = 5});
+    a("planned_start_level", planned_start_level, {.min = 0, .max = 5});
     a("hold_lost_s", hold_lost_s, {.min = 0, .max = 1000});
   }
 };
@@ -40,8 +42,9 @@ class Tracker {
   /// section 2.3 of the paper says.
   /// @param T_kf_previous  pose of the previous left camera in the key frame's, as estimated
   /// @param T_kf_left      pose of the new one, as predicted
+  /// @param planned        by the motion that the robot told, not by going on as before
   void track(const ImagePyramid& left, const ImagePyramid& right, const Pose& T_kf_previous,
-             const Pose& T_kf_left);
+             const Pose& T_kf_left, bool planned);
 
   /// Tries again the features that were not found, or did not agree, from their points alone.
   void track_again(const ImagePyramid& left, const ImagePyramid& right, const Pose& T_kf_previous,
@@ -71,8 +74,8 @@ class Tracker {
 
  private:
   void track_one(const ImagePyramid& left, const ImagePyramid& right, const AffineState& start_left,
-                 const AffineState& start_right, Feature& feature) const;
-  bool find(const PatchTemplate& patch, const ImagePyramid& image, const AffineState& start,
+                 const AffineState& start_right, int start_level, Feature& feature) const;
+  bool find(const PatchTemplate& patch, const ImagePyramid& image, const AffineState& start, int start_level,
             AffineState& state) const;
 
   StereoRig rig_;

@@ -63,7 +63,7 @@ class Plane {
   const double distance_m_ = 2.0;
 };
 
-class TrackerTest : public testing::Test {
+class TrackerTest : public testing::TestWithParam<bool> {
  protected:
   TrackerTest() { see(Pose::Identity()); }
 
@@ -106,24 +106,28 @@ class TrackerTest : public testing::Test {
     return o;
   }
 
+  void track(const ImagePyramid& right, const Pose& T_kf_previous, const Pose& T_kf_left) {
+    tracker_.track(view_.left, right, T_kf_previous, T_kf_left, GetParam());
+  }
+
   const StereoRig rig_ = rig_of_test();
   const Plane plane_;
   Plane::View view_;
   Tracker tracker_{rig_, {}, {}, StereoMatcher(rig_, {}, {})};
 };
 
-TEST_F(TrackerTest, FindsEveryFeatureWhereAKnownMotionTakesIt) {
+TEST_P(TrackerTest, FindsEveryFeatureWhereAKnownMotionTakesIt) {
   add_lattice();
   const Pose T_kf_left = motion(0.05, -0.02, 0.12, 0.5, 2, 1.5);
   see(T_kf_left);
-  tracker_.track(view_.left, view_.right, Pose::Identity(), T_kf_left);
+  track(view_.right, Pose::Identity(), T_kf_left);
   const Outcome o = outcome(T_kf_left);
   EXPECT_GT(o.visible, 45);
   EXPECT_EQ(o.found, o.visible);
   EXPECT_LT(o.worst_px, 0.1);
 }
 
-TEST_F(TrackerTest, ASomewhatWrongPredictionIsGoodEnough) {
+TEST_P(TrackerTest, ASomewhatWrongPredictionIsGoodEnough) {
   add_lattice();
   const Pose T_kf_left = motion(0.05, -0.02, 0.12, 0.5, 2, 1.5);
   see(T_kf_left);
@@ -132,22 +136,21 @@ TEST_F(TrackerTest, ASomewhatWrongPredictionIsGoodEnough) {
     see(Pose::Identity());
     add_lattice();
     see(T_kf_left);
-    tracker_.track(view_.left, view_.right, Pose::Identity(), T_kf_left * wrong);
+    track(view_.right, Pose::Identity(), T_kf_left * wrong);
     const Outcome o = outcome(T_kf_left);
     EXPECT_EQ(o.found, o.visible);
     EXPECT_LT(o.worst_px, 0.1);
   }
 }
 
-TEST_F(TrackerTest, StaysOnItOverManyFramesWithoutDrift) {
+TEST_P(TrackerTest, StaysOnItOverManyFramesWithoutDrift) {
   add_lattice();
   // The plan says half of what happens; every frame is matched with the first view, so nothing adds up.
   Pose T_kf_previous = Pose::Identity();
   for (int i = 1; i <= 8; ++i) {
     const Pose T_kf_left = motion(0.012 * i, 0, 0.02 * i, 0, 0.5 * i, -0.8 * i);
     see(T_kf_left);
-    tracker_.track(view_.left, view_.right, T_kf_previous,
-                   T_kf_previous * motion(0.006, 0, 0.01, 0, 0.25, -0.4));
+    track(view_.right, T_kf_previous, T_kf_previous * motion(0.006, 0, 0.01, 0, 0.25, -0.4));
     const Outcome o = outcome(T_kf_left);
     EXPECT_GE(o.found, o.visible - 1) << i;
     EXPECT_LT(o.worst_px, 0.1) << i;
@@ -155,34 +158,34 @@ TEST_F(TrackerTest, StaysOnItOverManyFramesWithoutDrift) {
   }
 }
 
-TEST_F(TrackerTest, AFeatureBehindTheCameraIsLost) {
+TEST_P(TrackerTest, AFeatureBehindTheCameraIsLost) {
   add_lattice();
-  tracker_.track(view_.left, view_.right, Pose::Identity(), motion(0, 0, 5, 0, 0, 0));
+  track(view_.right, Pose::Identity(), motion(0, 0, 5, 0, 0, 0));
   for (const Feature& f : tracker_.features()) EXPECT_FALSE(f.in_left || f.in_right);
 }
 
-TEST_F(TrackerTest, AFeatureOutsideTheRightImageIsInTheLeftOnly) {
+TEST_P(TrackerTest, AFeatureOutsideTheRightImageIsInTheLeftOnly) {
   Feature* f = tracker_.add(view_.left, {20, 120});
   ASSERT_NE(f, nullptr);
   f->p_kf = plane_.point(Pose::Identity(), rig_.cx_px, 20, 120);
-  tracker_.track(view_.left, view_.right, Pose::Identity(), Pose::Identity());
+  track(view_.right, Pose::Identity(), Pose::Identity());
   EXPECT_TRUE(tracker_.features()[0].in_left);
   EXPECT_FALSE(tracker_.features()[0].in_right);
 }
 
-TEST_F(TrackerTest, RowsThatDisagreeAreNoStereoPair) {
+TEST_P(TrackerTest, RowsThatDisagreeAreNoStereoPair) {
   add_lattice();
   const Pose lower = motion(0, -0.02, 0, 0, 0, 0);  // about 3 px
   const Plane::View other = plane_.view(lower);
-  tracker_.track(view_.left, other.right, Pose::Identity(), Pose::Identity());
+  track(other.right, Pose::Identity(), Pose::Identity());
   for (const Feature& f : tracker_.features()) EXPECT_FALSE(f.in_right);
 }
 
-TEST_F(TrackerTest, TrackAgainFindsWhatAWrongPlanMissed) {
+TEST_P(TrackerTest, TrackAgainFindsWhatAWrongPlanMissed) {
   add_lattice();
   const Pose T_kf_left = motion(0.05, -0.02, 0.12, 0.5, 2, 1.5);
   see(T_kf_left);
-  tracker_.track(view_.left, view_.right, Pose::Identity(), motion(0, 0, 0, 0, -14, 20));
+  track(view_.right, Pose::Identity(), motion(0, 0, 0, 0, -14, 20));
   for (Feature& f : tracker_.features()) f.is_inlier = false;
   const Outcome before = outcome(T_kf_left);
   tracker_.track_again(view_.left, view_.right, Pose::Identity(), T_kf_left);
@@ -192,9 +195,9 @@ TEST_F(TrackerTest, TrackAgainFindsWhatAWrongPlanMissed) {
   EXPECT_LT(after.worst_px, 0.1);
 }
 
-TEST_F(TrackerTest, TrackAgainLeavesGoodFeaturesAlone) {
+TEST_P(TrackerTest, TrackAgainLeavesGoodFeaturesAlone) {
   add_lattice();
-  tracker_.track(view_.left, view_.right, Pose::Identity(), Pose::Identity());
+  track(view_.right, Pose::Identity(), Pose::Identity());
   std::vector<Eigen::Vector2f> before;
   for (Feature& f : tracker_.features()) {
     f.is_inlier = true;
@@ -204,7 +207,7 @@ TEST_F(TrackerTest, TrackAgainLeavesGoodFeaturesAlone) {
   for (size_t i = 0; i < before.size(); ++i) EXPECT_EQ(tracker_.features()[i].left.uv_px, before[i]);
 }
 
-TEST_F(TrackerTest, IdsAreNeverUsedAgainAndTemplatesAre) {
+TEST_P(TrackerTest, IdsAreNeverUsedAgainAndTemplatesAre) {
   add_lattice();
   const size_t count = tracker_.features().size();
   for (size_t i = 0; i < count; ++i) EXPECT_EQ(tracker_.features()[i].id, static_cast<int64_t>(i));
@@ -232,7 +235,7 @@ TEST_F(TrackerTest, IdsAreNeverUsedAgainAndTemplatesAre) {
   for (const Feature& f : tracker_.features()) EXPECT_LT(f.slot, static_cast<int>(count));
 }
 
-TEST_F(TrackerTest, TheFirstViewSurvivesTheRemovalOfOthers) {
+TEST_P(TrackerTest, TheFirstViewSurvivesTheRemovalOfOthers) {
   add_lattice();
   const PatchBuffer before = tracker_.first_view(tracker_.features()[7]).level[0].grey;
   const int64_t id = tracker_.features()[7].id;
@@ -242,7 +245,7 @@ TEST_F(TrackerTest, TheFirstViewSurvivesTheRemovalOfOthers) {
   EXPECT_EQ(tracker_.first_view(tracker_.features()[0]).level[0].grey, before);
 }
 
-TEST_F(TrackerTest, AWindowThatIsNoGoodIsNotAdded) {
+TEST_P(TrackerTest, AWindowThatIsNoGoodIsNotAdded) {
   EXPECT_EQ(tracker_.add(view_.left, {3, 3}), nullptr);
   EXPECT_TRUE(tracker_.features().empty());
   const Feature* f = tracker_.add(view_.left, {150, 110});
@@ -251,6 +254,8 @@ TEST_F(TrackerTest, AWindowThatIsNoGoodIsNotAdded) {
   EXPECT_TRUE(f->in_left);
   EXPECT_FALSE(f->in_right);
 }
+
+INSTANTIATE_TEST_SUITE_P(WithoutAndWithAPlan, TrackerTest, testing::Bool());
 
 }  // namespace
 }  // namespace groundloop::slam
