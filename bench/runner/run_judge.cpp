@@ -1,5 +1,6 @@
 #include "bench/runner/run_judge.h"
 
+#include <future>
 #include <utility>
 
 #include "bench/metrics/alignment.h"
@@ -13,12 +14,22 @@ namespace groundloop::bench {
 namespace {
 
 /// The ceiling of the mapper: the same points at true poses, so that its errors and the localizer's separate.
-slam::OccupancyMap map_at_true_poses(const slam::Pipeline& core, const SimulatedSource& source) {
-  slam::Mapper mapper(source.rig(), core.options().mapping);
+/// Drawn beside the rest of the judgement; the core must outlive it.
+std::future<slam::OccupancyMap> map_at_true_poses(const slam::Pipeline& core, const SimulatedSource& source) {
+  struct TrueLook {
+    slam::Pose T_world_left;
+    const std::vector<slam::MapObservation>& observations;
+  };
+  std::vector<TrueLook> looks;
   for (const slam::KeyFrameRecord& k : core.key_frames()) {
-    mapper.add(source.truth(k.index).T_world_left, k.observations);
+    looks.push_back({source.truth(k.index).T_world_left, k.observations});
   }
-  return mapper.grid().map();
+  return std::async(std::launch::async,
+                    [rig = source.rig(), options = core.options().mapping, looks = std::move(looks)] {
+                      slam::Mapper mapper(rig, options);
+                      for (const TrueLook& look : looks) mapper.add(look.T_world_left, look.observations);
+                      return mapper.grid().map();
+                    });
 }
 
 slam::Trajectory left_truth(const SimulatedSource& source, size_t frames) {
@@ -56,6 +67,7 @@ void RunJudge::look(const Seen& seen) {
 
 RunJudgement RunJudge::judge(const std::vector<slam::FrameResult>& frames) {
   looking_.finish();
+  std::future<slam::OccupancyMap> ceiling = map_at_true_poses(core_, source_);
   RunJudgement run;
   run.stages = stage_errors_;
   run.truth = left_truth(source_, frames.size());
@@ -80,15 +92,14 @@ RunJudgement RunJudge::judge(const std::vector<slam::FrameResult>& frames) {
     run.position_error_m.push_back(
         (pairs.truth[i].T.translation() - pairs.estimate[i].T.translation()).norm());
   }
-  run.metrics.merge(map_metrics_at(run.T_world_map));
+  run.metrics.merge(map_metrics(run.T_world_map, ceiling.get()));
   return run;
 }
 
-Metrics RunJudge::map_metrics_at(const slam::Pose& T_world_map) const {
+Metrics RunJudge::map_metrics(const slam::Pose& T_world_map, const slam::OccupancyMap& at_true_poses) const {
   const ExactMap& exact = exact_.exact();
-  Metrics metrics = map_metrics(score_map(exact.map, exact.sight, core_.map(), T_world_map));
-  const MapScore ceiling =
-      score_map(exact.map, exact.sight, map_at_true_poses(core_, source_), slam::Pose::Identity());
+  Metrics metrics = bench::map_metrics(score_map(exact.map, exact.sight, core_.map(), T_world_map));
+  const MapScore ceiling = score_map(exact.map, exact.sight, at_true_poses, slam::Pose::Identity());
   if (ceiling.f1()) metrics["map.with_true_poses.f1"] = *ceiling.f1();
   return metrics;
 }

@@ -51,7 +51,7 @@ class RunJudge {
   };
   void look(const Seen& seen);
   slam::Pose T_world_seen(int64_t frame) const { return source_.truth(frame).T_world_seen; }
-  Metrics map_metrics_at(const slam::Pose& T_world_map) const;
+  Metrics map_metrics(const slam::Pose& T_world_map, const slam::OccupancyMap& at_true_poses) const;
   LoopScore loops() const;
   Metrics uncertainty() const;
   std::vector<MappedView> mapped_views() const;

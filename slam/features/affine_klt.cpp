@@ -39,10 +39,8 @@ struct Normalisation {
   float mean, scale;
 };
 
-/// Mean and inverse norm of a window; the scale is 0 when the window is flat.
-Normalisation normalisation_of(const float* patch) {
-  float sum, squares;
-  patch_moments(patch, &sum, &squares);
+/// Mean and inverse norm of a window by its sums; the scale is 0 when the window is flat.
+Normalisation normalisation_of(float sum, float squares) {
   const float mean = sum / kArea;
   const float energy = squares - sum * mean;
   // Below one grey level rms there is nothing but noise to align.
@@ -52,7 +50,7 @@ Normalisation normalisation_of(const float* patch) {
 
 /// Hessian of (translation, affine), with the mean of each steepest-descent image taken off: the bias is
 /// free, so only what differs from the mean informs.
-Eigen::Matrix<float, 6, 6> hessian_of(const GradientMoments& m) {
+Eigen::Matrix<float, 6, 6> hessian_of(const GradientMoments& m, const Eigen::Matrix<float, 6, 1>& images) {
   // rows and columns: gx, gy, x gx, y gx, x gy, y gy; moments: 1, x, y, xx, xy, yy
   Eigen::Matrix<float, 6, 6> H;
   H << m.xx[0], m.xy[0], m.xx[1], m.xx[2], m.xy[1], m.xy[2],  //
@@ -61,9 +59,7 @@ Eigen::Matrix<float, 6, 6> hessian_of(const GradientMoments& m) {
       m.xx[2], m.xy[2], m.xx[4], m.xx[5], m.xy[4], m.xy[5],   //
       m.xy[1], m.yy[1], m.xy[3], m.xy[4], m.yy[3], m.yy[4],   //
       m.xy[2], m.yy[2], m.xy[4], m.xy[5], m.yy[4], m.yy[5];
-  Eigen::Matrix<float, 6, 1> mean;
-  mean << m.gx[0], m.gy[0], m.gx[1], m.gx[2], m.gy[1], m.gy[2];
-  return H - mean * mean.transpose() / kArea;
+  return H - images * images.transpose() / kArea;
 }
 
 /// Values, gradients and Hessians of one level; false when the window is flat or has texture in one direction
@@ -76,7 +72,9 @@ bool prepare_level(const cv::Mat& image, const Eigen::Vector2f& uv, PatchLevel& 
     std::copy_n(region.data() + (row + 1) * kRegionStride + 1, kPatchStride,
                 level.grey.data() + row * kPatchStride);
   }
-  const Normalisation n = normalisation_of(level.grey.data());
+  float sum, squares;
+  patch_moments(level.grey.data(), &sum, &squares);
+  const Normalisation n = normalisation_of(sum, squares);
   if (n.scale == 0) return false;
   for (int i = 0; i < kPatchArea; ++i) {
     level.grey[i] = i % kPatchStride < kPatchSize ? (level.grey[i] - n.mean) * n.scale : 0;
@@ -85,7 +83,11 @@ bool prepare_level(const cv::Mat& image, const Eigen::Vector2f& uv, PatchLevel& 
 
   GradientMoments moments;
   gradient_moments(level.gx.data(), level.gy.data(), &moments);
-  Eigen::Matrix<float, 6, 6> H = hessian_of(moments);
+  level.images << moments.gx[0], moments.gy[0], moments.gx[1], moments.gx[2], moments.gy[1], moments.gy[2];
+  PatchSums own;
+  patch_sums(level.grey.data(), 0, level.grey.data(), level.gx.data(), level.gy.data(), &own);
+  level.grey_images = Eigen::Map<const Eigen::Matrix<float, 6, 1>>(own.images);
+  Eigen::Matrix<float, 6, 6> H = hessian_of(moments, level.images);
   // A weak pull towards the predicted shape keeps windows with little texture from collapsing.
   for (int k = 2; k < 6; ++k) H(k, k) += 0.01F * (H(0, 0) + H(1, 1));
 
@@ -106,12 +108,17 @@ KltStatus align_level(const PatchLevel& level, const cv::Mat& image, const KltOp
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     if (!window_inside(image, state.uv_px, state.A)) return KltStatus::kOutside;
     warp(image, state.uv_px, state.A, patch.data());
-    const Normalisation n = normalisation_of(patch.data());
+    PatchSums sums;
+    patch_sums(patch.data(), patch[kPatchArea / 2], level.grey.data(), level.gx.data(), level.gy.data(),
+               &sums);
+    const Normalisation n = normalisation_of(sums.sum, sums.squares);
     if (n.scale == 0) return KltStatus::kPoorMatch;
+    state.ncc = n.scale * sums.grey;
 
-    Eigen::Matrix<float, 6, 1> products;
-    patch_products(patch.data(), n.mean, n.scale, level.grey.data(), level.gx.data(), level.gy.data(),
-                   products.data(), &state.ncc);
+    // Of the residual (patch - mean) * scale - grey.
+    const Eigen::Matrix<float, 6, 1> products =
+        n.scale * (Eigen::Map<const Eigen::Matrix<float, 6, 1>>(sums.images) - n.mean * level.images) -
+        level.grey_images;
     Eigen::Vector2f step;
     if (affine) {
       const Eigen::Matrix<float, 6, 1> p = level.inverse_hessian * products;

@@ -40,6 +40,8 @@ struct PatchLevel {
   alignas(32) PatchBuffer grey;  ///< mean removed, unit norm; padding is 0
   alignas(32) PatchBuffer gx;    ///< gradients of `grey`; padding is 0
   alignas(32) PatchBuffer gy;
+  Eigen::Matrix<float, 6, 1> images,
+      grey_images;  ///< sums of the steepest-descent images, alone and times `grey`
   Eigen::Matrix<float, 6, 6> inverse_hessian;  ///< of (translation, affine in units of the half window)
   Eigen::Matrix2f inverse_translation_hessian;
 };

@@ -152,30 +152,33 @@ void patch_moments(const float* patch, float* sum, float* sum_of_squares) {
 }
 
 GROUNDLOOP_MULTIVERSION
-void patch_products(const float* patch, float mean, float scale, const float* grey, const float* gx,
-                    const float* gy, float products[6], float* correlation) {
-  float s[6][kLanes] = {}, c[kLanes] = {};
+void patch_sums(const float* patch, float offset, const float* grey, const float* gx, const float* gy,
+                PatchSums* sums) {
+  float s[6][kLanes] = {}, c[kLanes] = {}, p[kLanes] = {}, q[kLanes] = {};
   for (int row = 0; row < kPatchSize; ++row) {
     const float y = static_cast<float>(row - kPatchHalf) / kPatchHalf;
     for (int half = 0; half < kPatchStride; half += kLanes) {
       const int at = row * kPatchStride + half;
       for (int i = 0; i < kLanes; ++i) {
         const float x = kX[half + i] * (1.0F / kPatchHalf);
-        const float value = (patch[at + i] - mean) * scale;
-        const float r = value - grey[at + i];
-        const float rx = r * gx[at + i], ry = r * gy[at + i];  // gradients are 0 in the padding
+        const float value = (patch[at + i] - offset) * kInside[half + i];
+        const float px = value * gx[at + i], py = value * gy[at + i];
+        p[i] += value;
+        q[i] += value * value;
         c[i] += value * grey[at + i];
-        s[0][i] += rx;
-        s[1][i] += ry;
-        s[2][i] += rx * x;
-        s[3][i] += rx * y;
-        s[4][i] += ry * x;
-        s[5][i] += ry * y;
+        s[0][i] += px;
+        s[1][i] += py;
+        s[2][i] += px * x;
+        s[3][i] += px * y;
+        s[4][i] += py * x;
+        s[5][i] += py * y;
       }
     }
   }
-  for (int k = 0; k < 6; ++k) products[k] = sum_of(s[k]);
-  *correlation = sum_of(c);
+  sums->sum = sum_of(p);
+  sums->squares = sum_of(q);
+  sums->grey = sum_of(c);
+  for (int k = 0; k < 6; ++k) sums->images[k] = sum_of(s[k]);
 }
 
 }  // namespace groundloop::slam

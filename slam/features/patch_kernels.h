@@ -33,9 +33,17 @@ void gradient_moments(const float* gx, const float* gy, GradientMoments* moments
 /// Sum and sum of squares over the window (padding left out).
 void patch_moments(const float* patch, float* sum, float* sum_of_squares);
 
-/// Residual r = (patch - mean) * scale - grey and its products with the six steepest-descent images, in units
-/// of the half window: sum r (gx, gy, x gx, y gx, x gy, y gy). Also the correlation of patch and grey.
-void patch_products(const float* patch, float mean, float scale, const float* grey, const float* gx,
-                    const float* gy, float products[6], float* correlation);
+/// Sums over the window of p = patch - offset: alone, squared, times a template's grey values, and times its
+/// six steepest-descent images gx, gy, x gx, y gx, x gy, y gy with x and y in units of the half window. All
+/// that a step of an alignment is made of, whatever the mean and the contrast of the patch turn out to be.
+struct PatchSums {
+  float sum, squares;
+  float grey;
+  float images[6];
+};
+/// @param offset  near the mean: keeps the sums exact
+/// @param grey, gx, gy  0 in the padding
+void patch_sums(const float* patch, float offset, const float* grey, const float* gx, const float* gy,
+                PatchSums* sums);
 
 }  // namespace groundloop::slam

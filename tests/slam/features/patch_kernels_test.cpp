@@ -161,24 +161,28 @@ TEST(PatchMoments, LeaveThePaddingOut) {
   }
 }
 
-TEST(PatchProducts, EqualThePlainSums) {
+TEST(PatchSums, EqualThePlainSumsWithoutThePadding) {
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     const auto patch = random_patch(seed, false);
     const auto grey = random_patch(seed + 50, true), gx = random_patch(seed + 100, true),
                gy = random_patch(seed + 150, true);
-    const float mean = 0.02F, scale = 1.7F;
-    float products[6], correlation;
-    patch_products(patch.data(), mean, scale, grey.data(), gx.data(), gy.data(), products, &correlation);
-    double expected[6] = {}, expected_correlation = 0;
+    const float offset = 0.02F;
+    PatchSums sums;
+    patch_sums(patch.data(), offset, grey.data(), gx.data(), gy.data(), &sums);
+    double sum = 0, squares = 0, correlation = 0, expected[6] = {};
     over_window([&](int i, int column, int line) {
       const double x = column / double{kPatchHalf}, y = line / double{kPatchHalf};
-      const double value = (double{patch[i]} - mean) * scale, r = value - grey[i];
+      const double p = double{patch[i]} - offset;
       const double images[6] = {gx[i], gy[i], x * gx[i], y * gx[i], x * gy[i], y * gy[i]};
-      for (int k = 0; k < 6; ++k) expected[k] += r * images[k];
-      expected_correlation += value * grey[i];
+      for (int k = 0; k < 6; ++k) expected[k] += p * images[k];
+      sum += p;
+      squares += p * p;
+      correlation += p * grey[i];
     });
-    for (int k = 0; k < 6; ++k) EXPECT_NEAR(products[k], expected[k], 2e-6);
-    EXPECT_NEAR(correlation, expected_correlation, 2e-6);
+    EXPECT_NEAR(sums.sum, sum, 1e-5);
+    EXPECT_NEAR(sums.squares, squares, 1e-5);
+    EXPECT_NEAR(sums.grey, correlation, 2e-6);
+    for (int k = 0; k < 6; ++k) EXPECT_NEAR(sums.images[k], expected[k], 2e-6);
   }
 }
 
