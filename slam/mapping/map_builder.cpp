@@ -13,15 +13,26 @@ MapBuilder::MapBuilder(const StereoRig& rig, const FlogOptions& options, int loo
     : rig_(rig), options_(options), looks_kept_(looks_kept), current_{Mapper(rig, options), {}} {}
 
 void MapBuilder::add(Look look, const std::vector<Pose>& T_map_place) {
+  keep(std::move(look));
+  draw(T_map_place, 1);
+}
+
+void MapBuilder::keep(Look look) {
   looks_.push_back(std::move(look));
-  fill(current_, T_map_place, 1);
   forget_oldest(looks_.back().place);
+}
+
+bool MapBuilder::draw(const std::vector<Pose>& T_map_place, size_t looks) {
+  fill(current_, T_map_place, looks);
   if (!next_ && has_moved(T_map_place)) next_ = Grid{Mapper(rig_, options_), {}};
-  if (!next_) return;
-  fill(*next_, T_map_place, kLooksACall);
-  if (next_->T_map_left.size() < looks_.size()) return;
-  current_ = std::move(*next_);
-  next_.reset();
+  if (next_) {
+    fill(*next_, T_map_place, kLooksACall);
+    if (next_->T_map_left.size() == looks_.size()) {
+      current_ = std::move(*next_);
+      next_.reset();
+    }
+  }
+  return current_.T_map_left.size() == looks_.size();
 }
 
 void MapBuilder::complete(const std::vector<Pose>& T_map_place) {
@@ -36,15 +47,19 @@ void MapBuilder::forget_oldest(int place) {
   if (std::count_if(looks_.begin(), looks_.end(), of_place) <= looks_kept_) return;
   const auto oldest = std::find_if(looks_.begin(), looks_.end(), of_place) - looks_.begin();
   looks_.erase(looks_.begin() + oldest);
-  current_.T_map_left.erase(current_.T_map_left.begin() + oldest);
-  if (!next_ || oldest >= static_cast<std::ptrdiff_t>(next_->T_map_left.size())) return;
-  next_->T_map_left.erase(next_->T_map_left.begin() + oldest);
+  const auto forget = [oldest](Grid& grid) {
+    if (oldest < static_cast<std::ptrdiff_t>(grid.T_map_left.size())) {
+      grid.T_map_left.erase(grid.T_map_left.begin() + oldest);
+    }
+  };
+  forget(current_);
+  if (next_) forget(*next_);
 }
 
 bool MapBuilder::has_moved(const std::vector<Pose>& T_map_place) const {
   // The far end of a look swings with its heading; most points are nearer than this.
   constexpr double kReach_m = 4;
-  for (size_t i = 0; i < looks_.size(); ++i) {
+  for (size_t i = 0; i < current_.T_map_left.size(); ++i) {
     const Pose now = T_map_place[looks_[i].place] * looks_[i].T_place_left;
     const Pose moved = current_.T_map_left[i].inverse() * now;
     const double reach_m = moved.translation().norm() + kReach_m * rotation_angle_rad(moved.linear());

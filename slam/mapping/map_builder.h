@@ -35,9 +35,16 @@ class MapBuilder {
   /// @param looks_kept  of one place, at least 1
   MapBuilder(const StereoRig& rig, const FlogOptions& options, int looks_kept);
 
-  /// Adds a look, and goes on with a grid that is being built anew.
+  /// Adds a look and draws it, and goes on with a grid that is being built anew.
   /// @param T_map_place  pose of every place as known now, by number
   void add(Look look, const std::vector<Pose>& T_map_place);
+
+  /// Adds a look without drawing it.
+  void keep(Look look);
+  /// Draws looks that are kept and not drawn yet, a few at most, and goes on with a grid that is being built
+  /// anew.
+  /// @return whether the grid holds all that is kept
+  bool draw(const std::vector<Pose>& T_map_place, size_t looks);
 
   /// Builds the whole grid at the given poses.
   void complete(const std::vector<Pose>& T_map_place);

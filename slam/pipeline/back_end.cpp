@@ -42,8 +42,7 @@ BackEndAnswer BackEnd::process(HandedOver handed_over) {
   look_densely(handed_over.sight, handed_over.look);
   tie(handed_over.look);
   if (map_registration_) {
-    map_registration_->add(handed_over.look, handed_over.sight.index, handed_over.starts_segment,
-                           places_.T_map_place());
+    map_registration_->add(handed_over.look, handed_over.sight.index, handed_over.starts_segment);
     if (!link) register_map(link);
     tie(handed_over.look);
   }

@@ -66,23 +66,27 @@ MapRegistration::MapRegistration(const StereoRig& rig, const FlogOptions& mappin
       global_(rig, mapping, looks_kept),
       until_next_(options.key_frames) {}
 
-void MapRegistration::add(Look look, int64_t frame, bool starts_segment,
-                          const std::vector<Pose>& T_map_place) {
+void MapRegistration::add(Look look, int64_t frame, bool starts_segment) {
   in_segment_ = starts_segment ? 1 : in_segment_ + 1;
   if (starts_segment) until_next_ = options_.key_frames;
   --until_next_;
   held_.push_back({std::move(look), frame});
   while (held_.front().frame <= frame - options_.min_age_frames) {
-    global_.add(std::move(held_.front().look), T_map_place);
+    global_.keep(std::move(held_.front().look));
     held_.pop_front();
   }
 }
 
 std::optional<MapSight> MapRegistration::match(PlaceMap& places) {
+  constexpr size_t kLooksACall = 4;
+  if (global_.looks().empty()) return std::nullopt;
   const std::vector<Pose>& T_map_place = places.T_map_place();
   const Look& newest = held_.back().look;
+  const auto since_first = places.relative(global_.looks().front().key_frame, newest.key_frame);
+  if (!since_first || planar_sigma_m(*since_first) < options_.min_prior_sigma_m / 2) return std::nullopt;
+  const bool drawn = global_.draw(T_map_place, kLooksACall);
   const Pose T_map_left = T_map_place[newest.place] * newest.T_place_left;
-  const Look* old = until_next_ > 0 ? nullptr : nearest_old_look(T_map_left, T_map_place);
+  const Look* old = until_next_ > 0 || !drawn ? nullptr : nearest_old_look(T_map_left, T_map_place);
   if (old == nullptr) return std::nullopt;
   const std::optional<RelativeMotion> known = places.relative(old->key_frame, newest.key_frame);
   if (!known) return std::nullopt;
@@ -91,7 +95,7 @@ std::optional<MapSight> MapRegistration::match(PlaceMap& places) {
   const Pose T_map_body = T_map_left * rig_.T_body_left.inverse();
   const Pose T_map_level = level_under(T_map_body);
   const PlanarPose prior{planar(T_map_level), part(known_body, kPlanar)};
-  if (worst_sigma_m(prior.covariance) < options_.min_prior_sigma_m) return std::nullopt;
+  if (planar_sigma_m(*known) < options_.min_prior_sigma_m) return std::nullopt;
 
   until_next_ = std::max(1, options_.key_frames / 3);
   const MapMatch match =
@@ -104,6 +108,12 @@ std::optional<MapSight> MapRegistration::match(PlaceMap& places) {
   return MapSight{old->key_frame, renormalised(T_map_old.inverse() * T_map_matched * rig_.T_body_left),
                   from_body * covariance_of(match) * from_body.transpose(),
                   static_cast<int>(match.overlap * match.agreement * match.cells)};
+}
+
+/// Of the body's place on the floor, in the worst direction.
+double MapRegistration::planar_sigma_m(const RelativeMotion& known) const {
+  const Matrix6d to_body = se3_adjoint(rig_.T_body_left);
+  return worst_sigma_m(part(to_body * known.covariance * to_body.transpose(), kPlanar));
 }
 
 /// Whether what was known of height and tilt allows the correction: a drone, or a ramp, is on no common

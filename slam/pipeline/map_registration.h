@@ -29,10 +29,11 @@ class MapRegistration {
   /// Takes in a look. Looks before it enter the global map when they are old enough.
   /// @param frame           of the look
   /// @param starts_segment  whether track was lost before: the local map begins anew
-  void add(Look look, int64_t frame, bool starts_segment, const std::vector<Pose>& T_map_place);
+  void add(Look look, int64_t frame, bool starts_segment);
 
   /// Registers the maps when it is due and when the newest look's pose is known too little; none otherwise,
-  /// or when the maps have not enough structure.
+  /// or when the maps have not enough structure. The global map is drawn once poses begin to be uncertain, a
+  /// few looks a call.
   std::optional<MapSight> match(PlaceMap& places);
 
  private:
@@ -40,6 +41,7 @@ class MapRegistration {
     Look look;
     int64_t frame;
   };
+  double planar_sigma_m(const RelativeMotion& known) const;
   const Look* nearest_old_look(const Pose& T_map_left, const std::vector<Pose>& T_map_place) const;
   bool on_one_floor(const Pose& T_body_matched, const Matrix6d& known_body) const;
   Eigen::Vector3d upright_variance() const;  ///< of z, roll, pitch

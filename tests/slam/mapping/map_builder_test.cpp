@@ -56,6 +56,28 @@ TEST_F(MapBuilderTest, AddingLooksIsDrawingThemOneAfterAnother) {
   EXPECT_EQ(builder.looks().size(), looks_.size());
 }
 
+TEST_F(MapBuilderTest, WhatIsKeptIsDrawnWhenAskedAFewLooksACall) {
+  MapBuilder builder(laboratory_rig(), {}, 8);
+  for (const Look& look : looks_) builder.keep(look);
+  EXPECT_TRUE(builder.grid().map().value.empty());
+  int calls = 1;
+  while (!builder.draw(places_, 5)) ++calls;
+  EXPECT_EQ(calls, 5) << "24 looks, 5 a call";
+  EXPECT_EQ(builder.grid().map().value, drawn_at_once(looks_, places_).value);
+}
+
+TEST_F(MapBuilderTest, APlaceForgetsLooksThatWereNeverDrawn) {
+  MapBuilder builder(laboratory_rig(), {}, 2);
+  for (Look look : looks_) {
+    look.T_place_left = places_[0].inverse() * places_[look.place];
+    look.place = 0;
+    builder.keep(look);
+  }
+  ASSERT_EQ(builder.looks().size(), 2U);
+  EXPECT_TRUE(builder.draw(places_, 5));
+  EXPECT_EQ(builder.grid().map().value, drawn_at_once(builder.looks(), places_).value);
+}
+
 TEST_F(MapBuilderTest, FollowsPlacesThatMoveAFewLooksACall) {
   MapBuilder builder(laboratory_rig(), {}, 8);
   add_all(builder);

@@ -74,7 +74,7 @@ class Drive {
       const Eigen::Vector3d uvu = laboratory_rig().project(truth(k).inverse() * point.p_map);
       look.observations.push_back({uvu.cast<float>(), 1});
     }
-    registration_.add(look, k, k == 0, places_.T_map_place());
+    registration_.add(look, k, k == 0);
   }
 
   Matrix6d covariance_;
