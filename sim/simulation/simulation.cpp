@@ -13,9 +13,9 @@
 #include "sim/robot/planned_path.h"
 #include "sim/robot/wheel_angles.h"
 #include "sim/simulation/arm_simulation.h"
-#include "sim/simulation/collision_focus.h"
 #include "sim/simulation/kidnapping.h"
 #include "sim/simulation/path_check.h"
+#include "sim/simulation/physics_focus.h"
 #include "sim/simulation/state_pool.h"
 #include "sim/truth/truth_world.h"
 #include "sim/world/scene_motion.h"
@@ -103,7 +103,7 @@ struct Simulation::Wheeled : HeadCarrier {
   int64_t step_ns, period_ns, exposures;
 
   World::DataPtr state;
-  CollisionFocus focus;
+  PhysicsFocus focus;
   StatePool pool;
   Kidnapping kidnapping;
   WheelAngles angles;
@@ -179,8 +179,7 @@ void Simulation::Wheeled::check_path_after_moves(const Scenario& scenario) {
 /// Lets the robot sink into its contacts before time starts.
 void Simulation::Wheeled::settle() {
   const slam::Pose before = body_pose(world, *state);
-  focus.update(*state);
-  while (state->time < kSettle_s) mj_step(&focus.model(), state.get());
+  while (state->time < kSettle_s) focus.step(*state);
   state->time = 0;
   const double moved_m = (body_pose(world, *state).translation() - before.translation()).norm();
   if (!(moved_m < kSettled_m)) {
@@ -222,8 +221,7 @@ void Simulation::Wheeled::step() {
   state->ctrl[drive.left_actuator] = speeds.left_radps * wheel.grip[0];
   state->ctrl[drive.right_actuator] = speeds.right_radps * wheel.grip[1];
   if (head_mount) head_mount->steer(planned, *state);
-  focus.update(*state);
-  mj_step(&focus.model(), state.get());
+  focus.step(*state);
   angles.update(rolled_rad(*state), wheel);
   odometry.update(angles.counted_rad(0), angles.counted_rad(1));
   ++steps;
