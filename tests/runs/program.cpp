@@ -66,7 +66,8 @@ std::string Answer::complaint() const {
   std::istringstream in(err);
   std::string text, line;
   while (std::getline(in, line)) {
-    if (line.find(" pairs") == std::string::npos) text += (text.empty() ? "" : "\n") + line;
+    if (line.find(" pairs") != std::string::npos || line.find(", profile ") != std::string::npos) continue;
+    text += (text.empty() ? "" : "\n") + line;
   }
   return text;
 }

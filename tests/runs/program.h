@@ -15,7 +15,7 @@ struct Answer {
   std::string out;
   std::string err;
 
-  /// `err` without the lines of progress.
+  /// `err` without the lines of progress, and without the one that says what the pixels depend on.
   std::string complaint() const;
 };
 

@@ -24,6 +24,9 @@ TEST(RunFolder, IsCompleteAndAgreesWithItself) {
   EXPECT_THAT(answer.out, StartsWith("smoke seed 1: pass  ATE 0.0"));
   EXPECT_THAT(answer.out, HasSubstr("\n  " + folder + "/report.html\n"));
   EXPECT_EQ(answer.complaint(), "");
+  EXPECT_THAT(answer.err, StartsWith("smoke-1: OSMesa, llvmpipe"));
+  EXPECT_THAT(answer.err, HasSubstr(", 4 samples a pixel, x86-64 "));
+  EXPECT_THAT(answer.err, HasSubstr(", profile standard\n"));
 
   // every file of docs/architecture.md, and no leavings
   EXPECT_THAT(
