@@ -19,7 +19,7 @@ struct FlogOptions {
   /// emptiness: mu_E <- mu_E (1 - mu_O). Thin things, as the edge of a desk, are lost otherwise.
   bool ends_deny_empty = true;
 
-  double k_empty = 0.50;       ///< largest emptiness one key frame can add to a cell
+  double k_empty = 0.60;       ///< largest emptiness one key frame can add to a cell
   double k_occupied = 0.95;    ///< largest occupancy one key frame can add to a cell
   double k_confidence = 0.95;  ///< largest confidence one key frame can add to a cell
   double lambda = 1;  ///< how much a local map revises the contrary belief of the global one; 0: plain union

@@ -129,7 +129,7 @@ const std::vector<DensePoint>& DensePoints::measure(const cv::Mat& left, const c
                                                     const cv::Mat& rough) {
   rough_uvu_px_.clear(), points_.clear(), misfit_grey_.clear();
   if (options_.step_px <= 0) return points_;
-  sample_disparity(rough, options_.step_px, rough_uvu_px_);
+  sample_disparity(rough, options_.step_px, turn_++, rough_uvu_px_);
   for (const Eigen::Vector3f& uvu_px : rough_uvu_px_) {
     const std::optional<Refined> refined = refine(left, right, uvu_px, options_);
     if (!refined) continue;

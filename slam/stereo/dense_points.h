@@ -13,10 +13,10 @@ namespace groundloop::slam {
 /// Points of the dense disparity map that join the features' in the occupancy map. YAML: slam.dense_map
 struct DenseMapOptions {
   int step_px = 6;                 ///< distance of the points in the image; 0: features only, as in the paper
-  double weight = 1;               ///< trust in one such point, between 0 and 1
-  double max_sigma_px = 0.1;       ///< points whose texture does not fix the disparity as well are left out
+  double weight = 0.8;             ///< trust in one such point, between 0 and 1
+  double max_sigma_px = 0.15;      ///< points whose texture does not fix the disparity as well are left out
   double max_correction_px = 1.5;  ///< farther from the rough disparity is another surface
-  double max_misfit = 1.6;         ///< of the two images' windows, relative to what is usual in the pair
+  double max_misfit = 2;           ///< of the two images' windows, relative to what is usual in the pair
 
   template <class Archive>
   void visit(Archive& a) {
@@ -51,12 +51,14 @@ class DensePoints {
 
   /// @param left,right  the pair that `rough` was computed from, CV_8UC1
   /// @param rough       half-resolution map, see DenseDisparity::half_resolution()
+  /// Successive calls take turns with the points of different grids, so that a surface seen again is measured
+  /// at other places than before.
   /// @return points, row by row; valid until the next call
-  const std::vector<DensePoint>& measure(const cv::Mat& left, const cv::Mat& right,
-                                         const cv::Mat& rough);
+  const std::vector<DensePoint>& measure(const cv::Mat& left, const cv::Mat& right, const cv::Mat& rough);
 
  private:
   DenseMapOptions options_;
+  int64_t turn_ = 0;
   std::vector<Eigen::Vector3f> rough_uvu_px_;
   std::vector<DensePoint> points_;
   std::vector<float> misfit_grey_, sorted_misfit_grey_;

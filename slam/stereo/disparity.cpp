@@ -42,16 +42,19 @@ void DenseDisparity::forget_matches_outside() {
   }
 }
 
-void sample_disparity(const cv::Mat& half_resolution, int step_px, std::vector<Eigen::Vector3f>& uvu_px) {
+void sample_disparity(const cv::Mat& half_resolution, int step_px, int64_t turn,
+                      std::vector<Eigen::Vector3f>& uvu_px) {
   constexpr int kReach = 2;
   constexpr int kSmooth =
       kFixedPoint;  // neighbours that differ by more than one half-resolution px: a jump of depth
   const int step = std::max(step_px / 2, 1);
-  for (int v = step / 2 + kReach; v + kReach < half_resolution.rows; v += step) {
+  const auto u_first = kReach + static_cast<int>(turn % step);
+  const auto v_first = kReach + static_cast<int>(turn / step % step);
+  for (int v = v_first; v + kReach < half_resolution.rows; v += step) {
     const auto* here = half_resolution.ptr<int16_t>(v);
     const auto* above = half_resolution.ptr<int16_t>(v - kReach);
     const auto* below = half_resolution.ptr<int16_t>(v + kReach);
-    for (int u = step / 2 + kReach; u + kReach < half_resolution.cols; u += step) {
+    for (int u = u_first; u + kReach < half_resolution.cols; u += step) {
       const int d = here[u];
       const auto smooth = [d](int neighbour) { return neighbour >= 0 && std::abs(neighbour - d) <= kSmooth; };
       if (d <= 0 || !smooth(here[u - kReach]) || !smooth(here[u + kReach]) || !smooth(above[u]) ||

@@ -36,7 +36,10 @@ std::optional<float> disparity_around(const cv::Mat& half_resolution, float u_px
 
 /// Known disparities of a half-resolution map on a grid, away from the jumps of depth: appends
 /// (u_left, v, u_right) [full-resolution px].
-void sample_disparity(const cv::Mat& half_resolution, int step_px, std::vector<Eigen::Vector3f>& uvu_px);
+/// @param turn  which of the grids of this step, each shifted against the others: any number, successive ones
+/// go round
+void sample_disparity(const cv::Mat& half_resolution, int step_px, int64_t turn,
+                      std::vector<Eigen::Vector3f>& uvu_px);
 
 /// Dense disparity by block matching on half-resolution images: rough, and cheap. Section 2.2 of the paper.
 class DenseDisparity {
