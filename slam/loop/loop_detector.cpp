@@ -9,6 +9,7 @@ namespace groundloop::slam {
 namespace {
 
 constexpr double kLeastOverlap = 0.2;  // of a view's landmarks, for a closer look
+constexpr double kOutOfSight = 0.1;    // less of them: the camera looks elsewhere
 constexpr double kSamePlace = 0.2;     // views that overlap so much are one place
 constexpr double kRivalScore = 0.5;    // a rival looks at least so much alike, relative to the best
 constexpr int kLandmarksAsked = 32;
@@ -100,8 +101,11 @@ void LoopDetector::choose_candidates(const RelativePose& relative_pose) {
     alike[static_cast<size_t>(candidate.view)] = candidate.score / most;
 
   for (int view = 0; view < views; ++view) {
-    const StoredView& stored = views_[static_cast<size_t>(view)];
+    StoredView& stored = views_[static_cast<size_t>(view)];
     const auto prediction = relative_pose(stored.index, current_.view.index);
+    if (prediction && !stored.was_away) {
+      stored.was_away = predicted_overlap(stored, prediction->T_from_to) < kOutOfSight;
+    }
     // What the tracker has just seen is no news, unless it has lost its way since.
     const bool young =
         stored.index > std::min(current_.view.index - options_.min_age_frames, in_sight_since_);

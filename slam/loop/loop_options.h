@@ -17,13 +17,15 @@ struct LoopOptions {
   double min_reverse_ratio = 0.4;  ///< of the current landmarks that should be in the stored image
   int min_cells = 8;               ///< of an 8 x 6 grid over the image, that hold an agreeing landmark
   double max_sigma_ratio =
-      0.005;                   ///< position uncertainty of a link, relative to the landmarks' median depth
-  double max_sigma_deg = 0.3;  ///< rotation uncertainty of a link
-  double gate_sigma = 4.5;     ///< Mahalanobis distance to the predicted pose
-  double margin_m = 0.05;      ///< added to the prediction's standard deviation
-  double margin_deg = 1;       ///< added to the prediction's standard deviation
-  int confirmations = 2;       ///< successive key frames that must agree where nothing is predicted
-  double covered_ratio = 0.6;  ///< a view whose landmarks were found to this share is not stored again
+      0.005;                    ///< position uncertainty of a link, relative to the landmarks' median depth
+  double max_sigma_deg = 0.3;   ///< rotation uncertainty of a link
+  double gate_sigma = 4.5;      ///< Mahalanobis distance to the predicted pose
+  double margin_m = 0.05;       ///< added to the prediction's standard deviation
+  double margin_deg = 1;        ///< added to the prediction's standard deviation
+  double predicted_ease = 0.5;  ///< agreement needed where a place that was out of sight is expected to a few
+                                ///< pixels, relative to the above
+  int confirmations = 2;        ///< successive key frames that must agree where nothing is predicted
+  double covered_ratio = 0.6;   ///< a view whose landmarks were found to this share is not stored again
 
   template <class Archive>
   void visit(Archive& a) {
@@ -42,6 +44,7 @@ struct LoopOptions {
     a("gate_sigma", gate_sigma, {.min = 1, .max = 100});
     a("margin_m", margin_m, {.min = 0, .max = 100});
     a("margin_deg", margin_deg, {.min = 0, .max = 180});
+    a("predicted_ease", predicted_ease, {.min = 0.1, .max = 1});
     a("confirmations", confirmations, {.min = 1, .max = 10});
     a("covered_ratio", covered_ratio, {.min = 0, .max = 1});
   }

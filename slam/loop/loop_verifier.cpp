@@ -23,6 +23,7 @@ constexpr double kRatio = 0.85;
 constexpr double kGoodPrediction_px = 8;  // what KLT from a predicted position copes with
 constexpr double kAgreement_px = 2;
 constexpr double kExpectedResidual = 1.25;  // of noise and depth, in units of sigma_px
+constexpr double kFewKnowLess = 4;          // of the covariance: few landmarks share more of their errors
 constexpr int kColumns = 8, kRows = 6;
 
 /// Rough points, rough measurements: corners of coarse pyramid levels with block-matching depth.
@@ -48,6 +49,18 @@ RegistrationOptions fine_options(RegistrationOptions options) {
   options.ransac_iterations = 50;
   options.min_inliers = 6;
   options.min_inlier_ratio = 0;
+  return options;
+}
+
+/// Where the pose is known already, chance and places that look alike have little room: fewer landmarks will
+/// do, and what they say must be nearer to what is known.
+LoopOptions eased(LoopOptions options) {
+  const double ease = options.predicted_ease;
+  options.min_inliers = std::max(6, static_cast<int>(std::lround(ease * options.min_inliers)));
+  options.min_inlier_ratio *= ease;
+  options.min_reverse_ratio *= ease;
+  options.margin_m *= ease;
+  options.margin_deg *= ease;
   return options;
 }
 
@@ -98,6 +111,7 @@ LoopVerifier::LoopVerifier(const StereoRig& rig, const LoopOptions& options, con
                            const StereoOptions& stereo, const RegistrationOptions& registration)
     : rig_(rig),
       options_(options),
+      eased_(eased(options)),
       klt_(patient(klt)),
       matcher_(rig, stereo, klt_),
       sigma_px_(registration.sigma_px),
@@ -108,21 +122,27 @@ Verification LoopVerifier::verify(const StoredView& stored, const CurrentView& c
                                   const std::optional<PosePrediction>& prediction, uint64_t seed) {
   stored_pyramid_.build(stored.grey, klt_.levels);
   Verification found;
+  const LoopOptions* needed = &options_;
   if (prediction && precise_enough(stored, *prediction)) {
-    found = refine(stored, current, prediction->T_from_to, seed);
+    // Odometry knows more of what was in sight all the time than a few landmarks do.
+    found = refine(stored, current, prediction->T_from_to, seed, stored.was_away ? eased_ : options_);
+    if (found.accepted && !refusal(stored, found, options_).empty()) {
+      needed = &eased_;
+      found.link.covariance *= kFewKnowLess;
+    }
   }
   if (!found.accepted) {
     std::string message;
     if (const auto T_from_to = coarse_pose(stored, current, seed, message)) {
-      found = refine(stored, current, *T_from_to, seed);
+      found = refine(stored, current, *T_from_to, seed, options_);
     } else if (found.message == Verification().message) {
       found.message = message;
     }
   }
   if (found.accepted && prediction) {
     const double sigma =
-        contradiction_sigma(*prediction, {found.link.T_from_to, found.link.covariance}, options_);
-    if (!(sigma <= options_.gate_sigma)) {
+        contradiction_sigma(*prediction, {found.link.T_from_to, found.link.covariance}, *needed);
+    if (!(sigma <= needed->gate_sigma)) {
       found.accepted = false;
       found.message =
           fmt::format("{:.1f} sigma from the predicted pose, {:.1f} allowed", sigma, options_.gate_sigma);
@@ -156,7 +176,7 @@ std::optional<Pose> LoopVerifier::coarse_pose(const StoredView& stored, const Cu
 }
 
 Verification LoopVerifier::refine(const StoredView& stored, const CurrentView& current, const Pose& T_coarse,
-                                  uint64_t seed) {
+                                  uint64_t seed, const LoopOptions& needed) {
   Verification found;
   Pose T_from_to = T_coarse;
   // From the coarse pose, then from that of the first search, which finds more and knows what is hidden.
@@ -180,7 +200,7 @@ Verification LoopVerifier::refine(const StoredView& stored, const CurrentView& c
   // not average them out as independent noise.
   found.link.covariance *= std::max(1.0, registered_.residual_px / (kExpectedResidual * sigma_px_));
   found.reverse_ratio = reverse_ratio(current, T_from_to);
-  found.message = refusal(stored, found);
+  found.message = refusal(stored, found, needed);
   found.accepted = found.message.empty();
   return found;
 }
@@ -272,29 +292,30 @@ int LoopVerifier::occupied_cells(const Search& search) const {
 }
 
 /// What speaks against the link, empty when nothing does.
-std::string LoopVerifier::refusal(const StoredView& stored, const Verification& found) const {
-  if (found.link.inliers < options_.min_inliers) {
-    return fmt::format("{} landmarks agree, {} needed", found.link.inliers, options_.min_inliers);
+std::string LoopVerifier::refusal(const StoredView& stored, const Verification& found,
+                                  const LoopOptions& needed) const {
+  if (found.link.inliers < needed.min_inliers) {
+    return fmt::format("{} landmarks agree, {} needed", found.link.inliers, needed.min_inliers);
   }
-  if (found.inlier_ratio < options_.min_inlier_ratio) {
+  if (found.inlier_ratio < needed.min_inlier_ratio) {
     return fmt::format("{} of {} stored landmarks found, {:.0f} % needed", found.link.inliers, found.expected,
-                       100 * options_.min_inlier_ratio);
+                       100 * needed.min_inlier_ratio);
   }
-  if (found.reverse_ratio < options_.min_reverse_ratio) {
+  if (found.reverse_ratio < needed.min_reverse_ratio) {
     return fmt::format("{:.0f} % of the current landmarks found in the stored view, {:.0f} % needed",
-                       100 * found.reverse_ratio, 100 * options_.min_reverse_ratio);
+                       100 * found.reverse_ratio, 100 * needed.min_reverse_ratio);
   }
   const int cells = occupied_cells(search_);
-  if (cells < options_.min_cells) {
+  if (cells < needed.min_cells) {
     return fmt::format("landmarks in {} of {} parts of the image, {} needed", cells, kColumns * kRows,
-                       options_.min_cells);
+                       needed.min_cells);
   }
   const auto largest_sigma = [](const Eigen::Matrix3d& covariance) {
     return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues().z());
   };
   const double sigma_m = largest_sigma(found.link.covariance.topLeftCorner<3, 3>());
   const double sigma_deg = largest_sigma(found.link.covariance.bottomRightCorner<3, 3>()) / kDegree;
-  if (sigma_m > options_.max_sigma_ratio * median_depth_m(stored) || sigma_deg > options_.max_sigma_deg) {
+  if (sigma_m > needed.max_sigma_ratio * median_depth_m(stored) || sigma_deg > needed.max_sigma_deg) {
     return fmt::format("uncertain by {:.3f} m and {:.2f} deg", sigma_m, sigma_deg);
   }
   return {};

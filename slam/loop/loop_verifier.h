@@ -71,17 +71,17 @@ class LoopVerifier {
   std::optional<Pose> coarse_pose(const StoredView& stored, const CurrentView& current, uint64_t seed,
                                   std::string& message);
   Verification refine(const StoredView& stored, const CurrentView& current, const Pose& T_from_to,
-                      uint64_t seed);
+                      uint64_t seed, const LoopOptions& needed);
   void find_landmarks(const StoredView& stored, const CurrentView& current, const Pose& T_from_to,
                       Search& search);
   double reverse_ratio(const CurrentView& current, const Pose& T_from_to);
-  std::string refusal(const StoredView& stored, const Verification& found) const;
+  std::string refusal(const StoredView& stored, const Verification& found, const LoopOptions& needed) const;
   bool find(const ImagePyramid& image, const Eigen::Vector2f& uv_px, const Eigen::Matrix2f& A,
             AffineState& state) const;
   int occupied_cells(const Search& search) const;
 
   StereoRig rig_;
-  LoopOptions options_;
+  LoopOptions options_, eased_;
   KltOptions klt_;
   StereoMatcher matcher_;
   double sigma_px_;

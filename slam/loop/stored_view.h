@@ -39,6 +39,7 @@ struct StoredView {
   cv::Mat grey;       ///< left image, CV_8UC1
   std::vector<Landmark> landmarks;
   std::vector<Keypoint> keypoints;
+  bool was_away = false;  ///< whether the camera has looked at something else since
 
   size_t bytes() const {
     return grey.total() + landmarks.size() * sizeof(Landmark) + keypoints.size() * sizeof(Keypoint);

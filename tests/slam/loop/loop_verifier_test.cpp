@@ -106,6 +106,38 @@ TEST(LoopVerifier, ItsErrorIsWithinItsCovariance) {
   EXPECT_GT(nees / links, 1);
 }
 
+/// With 24 landmarks spread over the image, where 30 are needed.
+TEST(LoopVerifier, FewLandmarksWillDoWhereAPlaceThatWasOutOfSightIsExpected) {
+  const PaintedRoom room(1);
+  const Pose T_from_to = moved(0.1, 0, 0.1, 0, 2, 0);
+  CurrentView stored = current_view(room.key_frame(10, kHere));
+  const CurrentView current = current_view(room.key_frame(200, kHere * T_from_to));
+  std::vector<Landmark> few;
+  const size_t stride = stored.view.landmarks.size() / 24;
+  for (size_t i = 0; few.size() < 24; ++i) few.push_back(stored.view.landmarks[i * stride]);
+  stored.view.landmarks = few;
+  const PosePrediction near = prediction_of(T_from_to * moved(0.01, 0, 0, 0, 0.1, 0), 0.01, 0.1);
+  const PosePrediction off = prediction_of(T_from_to * moved(0, 0, 0.15, 0, 0, 0), 0.01, 0.1);
+  LoopVerifier verifier = make_verifier();
+
+  EXPECT_THAT(verifier.verify(stored.view, current, std::nullopt, 1).message,
+              HasSubstr("landmarks agree, 30 needed"));
+  EXPECT_THAT(verifier.verify(stored.view, current, near, 1).message, HasSubstr("landmarks agree, 30 needed"))
+      << "it was in sight all the time";
+
+  stored.view.was_away = true;
+  const Verification found = verifier.verify(stored.view, current, near, 1);
+  ASSERT_TRUE(found.accepted) << found.message;
+  EXPECT_LT(error_of(found, T_from_to).head<3>().norm(), 0.015);
+  const Verification contradicted = verifier.verify(stored.view, current, off, 1);
+  EXPECT_FALSE(contradicted.accepted);
+  EXPECT_THAT(contradicted.message, HasSubstr("sigma from the predicted pose"));
+
+  LoopOptions strict;
+  strict.predicted_ease = 1;
+  EXPECT_FALSE(make_verifier(strict).verify(stored.view, current, near, 1).accepted);
+}
+
 TEST(LoopVerifier, SeesNoLinkToWhatIsBehind) {
   const PaintedRoom room(1);
   const CurrentView stored = current_view(room.key_frame(10, kHere));
