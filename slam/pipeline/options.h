@@ -26,7 +26,7 @@ struct KeyFrameOptions {
   double max_rotation_deg = 8;      ///< motion since the last key frame
   double min_tracked_ratio = 0.75;  ///< agreeing features, relative to those of the last key frame
   int max_interval_frames = 30;
-  int looks_kept = 8;  ///< key frames of one place whose points stay in the map; the oldest goes
+  int looks_kept = 3;  ///< key frames of one place whose points stay in the map; the oldest goes
 
   template <class Archive>
   void visit(Archive& a) {
