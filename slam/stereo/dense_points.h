@@ -13,10 +13,10 @@ namespace groundloop::slam {
 /// Points of the dense disparity map that join the features' in the occupancy map. YAML: slam.dense_map
 struct DenseMapOptions {
   int step_px = 6;                 ///< distance of the points in the image; 0: features only, as in the paper
-  double weight = 0.8;             ///< trust in one such point, between 0 and 1
+  double weight = 1;               ///< trust in one such point, between 0 and 1
   double max_sigma_px = 0.15;      ///< points whose texture does not fix the disparity as well are left out
   double max_correction_px = 1.5;  ///< farther from the rough disparity is another surface
-  double max_misfit = 2;           ///< of the two images' windows, relative to what is usual in the pair
+  double max_misfit = 1.6;         ///< of the two images' windows, relative to what is usual in the pair
 
   template <class Archive>
   void visit(Archive& a) {
