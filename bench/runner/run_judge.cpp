@@ -69,7 +69,7 @@ RunJudgement RunJudge::judge(const std::vector<slam::FrameResult>& frames) {
   looking_.finish();
   std::future<slam::OccupancyMap> ceiling = map_at_true_poses(core_, source_);
   RunJudgement run;
-  run.stages = stage_errors_;
+  run.stages = std::move(stage_errors_);
   run.truth = left_truth(source_, frames.size());
   PosePairs pairs{run.truth, core_.trajectory()};
   run.metrics = trajectory_metrics(pairs);

@@ -56,6 +56,12 @@ double worst_sigma_m(const Eigen::Matrix3d& covariance) {
   return std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
 }
 
+/// The same covariance of the body in place of the left camera.
+Matrix6d body_covariance(const StereoRig& rig, const RelativeMotion& known) {
+  const Matrix6d to_body = se3_adjoint(rig.T_body_left);
+  return to_body * known.covariance * to_body.transpose();
+}
+
 }  // namespace
 
 MapRegistration::MapRegistration(const StereoRig& rig, const FlogOptions& mapping,
@@ -90,12 +96,11 @@ std::optional<MapSight> MapRegistration::match(PlaceMap& places) {
   if (old == nullptr) return std::nullopt;
   const std::optional<RelativeMotion> known = places.relative(old->key_frame, newest.key_frame);
   if (!known) return std::nullopt;
-  const Matrix6d to_body = se3_adjoint(rig_.T_body_left);
-  const Matrix6d known_body = to_body * known->covariance * to_body.transpose();
+  const Matrix6d known_body = body_covariance(rig_, *known);
   const Pose T_map_body = T_map_left * rig_.T_body_left.inverse();
   const Pose T_map_level = level_under(T_map_body);
   const PlanarPose prior{planar(T_map_level), part(known_body, kPlanar)};
-  if (planar_sigma_m(*known) < options_.min_prior_sigma_m) return std::nullopt;
+  if (worst_sigma_m(prior.covariance) < options_.min_prior_sigma_m) return std::nullopt;
 
   until_next_ = std::max(1, options_.key_frames / 3);
   const MapMatch match =
@@ -112,8 +117,7 @@ std::optional<MapSight> MapRegistration::match(PlaceMap& places) {
 
 /// Of the body's place on the floor, in the worst direction.
 double MapRegistration::planar_sigma_m(const RelativeMotion& known) const {
-  const Matrix6d to_body = se3_adjoint(rig_.T_body_left);
-  return worst_sigma_m(part(to_body * known.covariance * to_body.transpose(), kPlanar));
+  return worst_sigma_m(part(body_covariance(rig_, known), kPlanar));
 }
 
 /// Whether what was known of height and tilt allows the correction: a drone, or a ramp, is on no common
