@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/mat.hpp>
 #include <optional>
