@@ -68,7 +68,13 @@ const RegistrationResult& FrontEnd::follow(const StereoFrame& frame, const Pose&
   return registered_;
 }
 
-/// Features of the last key frame that the plan puts into both images.
+/// Whether the left image has no more grey values to tell at a place: whatever is there cannot be seen.
+bool FrontEnd::blown_out(const Eigen::Vector2d& uv_px) const {
+  constexpr int kWhite = 250 * ImagePyramid::kScale;  // a little less than full: noise goes downwards only
+  return left_.level(0).at<int16_t>(cvRound(uv_px.y()), cvRound(uv_px.x())) >= kWhite;
+}
+
+/// Features of the last key frame that the plan puts into both images, where they can be seen.
 int FrontEnd::expected_in_view(const Pose& T_kf_predicted) const {
   const Pose T_left_kf = T_kf_predicted.inverse();
   int expected = 0;
@@ -78,7 +84,7 @@ int FrontEnd::expected_in_view(const Pose& T_kf_predicted) const {
     const Eigen::Vector3d uvu = rig_.project(p_left);
     const bool inside = uvu.z() >= kBorder_px && uvu.x() < rig_.width_px - kBorder_px &&
                         uvu.y() >= kBorder_px && uvu.y() < rig_.height_px - kBorder_px;
-    if (inside) ++expected;
+    if (inside && !blown_out(uvu.head<2>())) ++expected;
   }
   return expected;
 }

@@ -61,6 +61,7 @@ class FrontEnd {
  private:
   bool replaced(OracleStage stage) const { return oracle_ != nullptr && oracle_->replaces(stage); }
   void look_up_tracks(int64_t frame);
+  bool blown_out(const Eigen::Vector2d& uv_px) const;
   int expected_in_view(const Pose& T_kf_predicted) const;
   void distrust_few(int expected);
   void register_points(const StereoFrame& frame, const Pose& T_kf_predicted);

@@ -182,6 +182,25 @@ TEST_F(PipelineTest, AShortBlackoutIsBridgedWithinTheSegment) {
               ElementsAre(kStarted, kTracking, kTracking, kTracking, kLost, kLost, kTracking, kTracking));
 }
 
+TEST_F(PipelineTest, WhatIsBlownOutIsNotMissed) {
+  // A flash: most features are in white, where nothing can be seen. Those that are left are few of all.
+  constexpr double kFlash = 2;
+  Pipeline core(room_.rig(), {});
+  for (int64_t i = 0; i < 8; ++i) {
+    StereoFrame frame = room_.frame(i);
+    if (i == 4) {
+      frame.left *= kFlash;
+      frame.right *= kFlash;
+    }
+    const FrameResult result = core.process(frame);
+    if (i == 4) {
+      EXPECT_LT(result.inliers, 40);
+    }
+    EXPECT_EQ(result.status, i == 0 ? kStarted : kTracking) << i << ": " << result.message;
+    EXPECT_LT(distance_m(result.T_map_left, room_.T_map_left(static_cast<double>(i))), 0.02) << i;
+  }
+}
+
 TEST_F(PipelineTest, StartsWhenThereIsSomethingToSee) {
   Pipeline core(room_.rig(), {});
   const FrameResult dark = core.process(room_.dark_frame(0));
