@@ -13,9 +13,8 @@ struct Tolerance {
   double distance_m;
   double angle_deg;
 };
-constexpr Tolerance kCarriedAway{0.3, 20};
 constexpr Tolerance kRight{0.1, 2};
-constexpr Tolerance kJump{0.1, 5};
+constexpr Tolerance kJump{0.1, 5};  ///< more is no step that goes by itself, neither true nor estimated
 
 bool agree(const slam::Pose& T_a, const slam::Pose& T_b, const Tolerance& tolerance) {
   const slam::Pose difference = T_a.inverse() * T_b;
@@ -31,7 +30,7 @@ void RecoveryJudge::observe(const JudgedFrame& frame, const std::function<std::v
   bool carried_away = false;
   if (before_) {
     const slam::Pose T_true_step = before_->T_world_left.inverse() * frame.T_world_left;
-    carried_away = frame.T_previous_left && !agree(*frame.T_previous_left, T_true_step, kCarriedAway);
+    carried_away = frame.T_previous_left && !agree(*frame.T_previous_left, T_true_step, kJump);
     const slam::Pose T_step = before_->T_map_left.inverse() * result.T_map_left;
     const bool noted = result.status != TrackingStatus::kTracking || carried_away ||
                        before_->status == TrackingStatus::kLost || before_->segment != result.segment ||

@@ -29,9 +29,10 @@ struct JudgedFrame {
 /// silence.
 ///
 /// An interruption begins where tracking is lost, or where the camera truly moved otherwise than planned by
-/// more than 0.3 m or 20 deg in one frame (it was carried away), and ends with the first frame that is not
+/// more than 0.1 m or 5 deg in one frame (it was carried away), and ends with the first frame that is not
 /// lost and whose pose is right in the map as it was before: within 0.1 m and 2 deg of where the nearest key
-/// frame from before puts it. Being carried away again begins it anew.
+/// frame from before puts it: the same frame, when it is followed at once. Being carried away again begins it
+/// anew.
 ///
 /// A silent jump is a step of the estimate that differs from the true step by more than 0.1 m or 5 deg, at a
 /// frame that says nothing of it: it tracks as the frame before did, in the same segment, without a loop

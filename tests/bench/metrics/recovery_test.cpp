@@ -90,6 +90,16 @@ TEST_F(Recovery, BeingCarriedAwayIsToldByTheTruth) {
   EXPECT_EQ(judge_.metrics().at("tracking.silent_jumps"), 0);
 }
 
+TEST_F(Recovery, BeingPutAsideAndFollowedAtOnceTakesNoTime) {
+  drive_on(40);
+  step(moved(0.1, 0.09, 0), TrackingStatus::kTracking, Pose::Identity());
+  EXPECT_EQ(judge_.metrics().at("tracking.interruptions"), 0) << "wheels may slip";
+  step(moved(-0.3, 0.2, 0) * turned(-15, {0, 0, 1}), TrackingStatus::kTracking, Pose::Identity());
+  EXPECT_EQ(judge_.metrics().at("tracking.interruptions"), 1);
+  EXPECT_EQ(judge_.metrics().at("tracking.relocalised_s"), 0);
+  EXPECT_EQ(judge_.metrics().at("tracking.silent_jumps"), 0);
+}
+
 TEST_F(Recovery, KeyFramesMadeSinceDoNotMakeItRight) {
   drive_on(40);
   step(moved(-2, 0, 0), TrackingStatus::kTracking, moved(2.1, 0, 0));
