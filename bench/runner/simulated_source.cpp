@@ -57,10 +57,11 @@ SimulatedSource::SimulatedSource(const sim::Scenario& scenario, const sim::World
 }
 
 void SimulatedSource::steer_by(const slam::FrameResult& result) {
-  const bool known = result.status != slam::TrackingStatus::kLost;
+  const bool seen =
+      result.status == slam::TrackingStatus::kTracking || result.status == slam::TrackingStatus::kStarted;
   slam::Pose T_map_camera = result.T_map_left;
   if (raw_) T_map_camera = T_map_camera * raw_->rectifier().T_raw_left().inverse();
-  poses_.put(known ? std::optional(T_map_camera) : std::nullopt);
+  poses_.put(seen ? std::optional(T_map_camera) : std::nullopt);
 }
 
 std::optional<slam::Pose> SimulatedSource::pose_of_exposure(int64_t exposure) {

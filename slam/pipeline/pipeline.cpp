@@ -12,6 +12,7 @@
 #include "slam/pipeline/background.h"
 #include "slam/pipeline/front_end.h"
 #include "slam/pipeline/key_frame_window.h"
+#include "slam/pipeline/repeated_pair.h"
 #include "slam/pipeline/stage_clock.h"
 #include "slam/pipeline/state_hash.h"
 
@@ -46,6 +47,8 @@ struct Pipeline::Impl {
 
   void process(const StereoFrame& frame, FrameResult& result);
   void take_results(int64_t frame_index, FrameResult& result);
+  void hold(const StereoFrame& frame, FrameResult& result);
+  bool held_too_long(const StereoFrame& frame) const;
   void track_frame(const StereoFrame& frame, StageClock& clock, FrameResult& result);
   void lose(const StereoFrame& frame, StageClock& clock, FrameResult& result);
   void start_segment(const StereoFrame& frame, StageClock& clock, FrameResult& result);
@@ -72,17 +75,20 @@ struct Pipeline::Impl {
   const StereoRig rig;
   const SlamOptions options;
   const bool adjusts;
+  RepeatedPair repeated_pair;
   FrontEnd front;
   KeyFrameWindow window;
   std::vector<OdometryPose> known_better;  ///< refined since the last key frame was handed over
 
   bool started = false;
   int segment = 0;
+  int64_t seen_ns = 0;    ///< time of the last frame with images of its own
   int64_t known_ns = 0;   ///< time of the last frame whose pose was seen
   size_t steps_held = 0;  ///< newest steps that only the plan gave a pose
   int segment_key_frames = 0;
   Pose T_odom_kf = Pose::Identity();
   Pose T_kf_left = Pose::Identity();        ///< last frame in the last key frame
+  Pose T_kf_seen = Pose::Identity();        ///< last frame with images of its own in the last key frame
   Pose T_previous_left = Pose::Identity();  ///< last motion, for constant velocity
   std::optional<Pose> T_kf_planned;         ///< planned motion since the last key frame
   int64_t kf_frame = 0;
@@ -166,13 +172,18 @@ void Pipeline::Impl::process(const StereoFrame& frame, FrameResult& result) {
   StageClock clock(result);
   take_results(frame.index, result);
   clock.restart();
-  front.see(frame, clock);
-
   if (T_kf_planned && frame.T_previous_left) {
     T_kf_planned = *T_kf_planned * *frame.T_previous_left;
   } else {
     T_kf_planned.reset();
   }
+  if (repeated_pair.is(frame) && started && known_ns == seen_ns) {
+    hold(frame, result);
+    record(frame, result);
+    return;
+  }
+  seen_ns = frame.stamp_ns;
+  front.see(frame, clock);
   if (!started) {
     // While there is nothing to see, the plan goes on.
     if (!steps.empty()) T_kf_left = predicted_T_kf_left(frame);
@@ -185,7 +196,21 @@ void Pipeline::Impl::process(const StereoFrame& frame, FrameResult& result) {
       make_key_frame(frame, clock, result);
     }
   }
+  T_kf_seen = T_kf_left;
   record(frame, result);
+}
+
+/// A pair that was seen before tells nothing of the time of its stamp: the plan goes on from the last pose.
+void Pipeline::Impl::hold(const StereoFrame& frame, FrameResult& result) {
+  T_kf_left = predicted_T_kf_left(frame);
+  result.status = held_too_long(frame) ? TrackingStatus::kLost : TrackingStatus::kRepeated;
+  result.message = "the images are those of the frame before";
+}
+
+/// Whether the plan has been believed for as long as it may be without a pose.
+bool Pipeline::Impl::held_too_long(const StereoFrame& frame) const {
+  constexpr double kNanosecond_s = 1e-9;
+  return static_cast<double>(frame.stamp_ns - known_ns) * kNanosecond_s > options.tracking.hold_lost_s;
 }
 
 /// What was done beside the frame path and is due now.
@@ -199,7 +224,7 @@ void Pipeline::Impl::take_results(int64_t frame_index, FrameResult& result) {
 
 void Pipeline::Impl::track_frame(const StereoFrame& frame, StageClock& clock, FrameResult& result) {
   Pose T_kf_predicted = predicted_T_kf_left(frame);
-  const RegistrationResult& registered = front.follow(frame, T_kf_left, T_kf_predicted, clock);
+  const RegistrationResult& registered = front.follow(frame, T_kf_seen, T_kf_predicted, clock);
   note_features(result);
   result.features_tracked = static_cast<int>(registered.inlier.size());
   result.inliers = registered.inliers;
@@ -219,8 +244,7 @@ void Pipeline::Impl::track_frame(const StereoFrame& frame, StageClock& clock, Fr
 
 /// Without a pose the plan is believed for some time; then everything starts anew where the plan says.
 void Pipeline::Impl::lose(const StereoFrame& frame, StageClock& clock, FrameResult& result) {
-  constexpr double kNanosecond_s = 1e-9;
-  if (static_cast<double>(frame.stamp_ns - known_ns) * kNanosecond_s <= options.tracking.hold_lost_s) return;
+  if (!held_too_long(frame)) return;
   const std::string why = result.message;
   start_segment(frame, clock, result);
   result.status = TrackingStatus::kLost;
@@ -460,7 +484,8 @@ void Pipeline::Impl::record(const StereoFrame& frame, FrameResult& result) {
   result.T_map_left = T_map_odom() * T_odom_left;
   result.state_hash = state_hash(result);
   steps.push_back({frame.stamp_ns, key_frame, T_kf_left});
-  const bool held = result.status == TrackingStatus::kLost && !result.is_key_frame;
+  const bool held = (result.status == TrackingStatus::kLost && !result.is_key_frame) ||
+                    result.status == TrackingStatus::kRepeated;
   steps_held = held ? steps_held + 1 : 0;
 }
 

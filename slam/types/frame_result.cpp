@@ -10,6 +10,8 @@ const char* name_of(TrackingStatus status) {
       return "started";
     case TrackingStatus::kTracking:
       return "tracking";
+    case TrackingStatus::kRepeated:
+      return "repeated";
     case TrackingStatus::kLost:
       return "lost";
   }
@@ -17,8 +19,9 @@ const char* name_of(TrackingStatus status) {
 }
 
 const char* name_of(Stage stage) {
-  constexpr std::array<const char*, kStageCount> kNames = {
-      "pyramid", "tracking", "registration", "detection", "disparity", "stereo", "adjustment", "loop", "mapping"};
+  constexpr std::array<const char*, kStageCount> kNames = {"pyramid",    "tracking",  "registration",
+                                                           "detection",  "disparity", "stereo",
+                                                           "adjustment", "loop",      "mapping"};
   return kNames.at(static_cast<size_t>(stage));
 }
 

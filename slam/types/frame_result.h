@@ -14,6 +14,7 @@ enum class TrackingStatus {
   kNotRun,    ///< nothing was processed
   kStarted,   ///< first frame of a segment: pose from the plan (identity for the first of all)
   kTracking,  ///< pose from vision
+  kRepeated,  ///< the images of the frame before again: pose is the planned motion added to the last
   kLost       ///< vision gave no pose; the reported one is the planned motion added to the last
 };
 const char* name_of(TrackingStatus status);
@@ -53,7 +54,7 @@ struct FrameResult {
   int64_t index = -1;
   int64_t stamp_ns = 0;
   TrackingStatus status = TrackingStatus::kNotRun;
-  std::string message;  ///< why, when the frame is lost; empty otherwise
+  std::string message;  ///< why, when the pose is not from vision; empty otherwise
   int segment = 0;      ///< rises by one at each recovery from lost
   bool is_key_frame = false;
   Pose T_map_left =
@@ -63,10 +64,10 @@ struct FrameResult {
 
   int features_tracked = 0;
   int inliers = 0;
-  double residual_px = 0;  ///< rms reprojection error of the inliers
+  double residual_px = 0;    ///< rms reprojection error of the inliers
 
   std::vector<FeatureObservation> features;
-  std::vector<LoopLink> links;  ///< places recognised; they enter the estimate at this frame
+  std::vector<LoopLink> links;                 ///< places recognised; they enter the estimate at this frame
   std::array<double, kStageCount> stage_ms{};  ///< wall time, not part of the determinism promise
   double total_ms = 0;
   uint64_t state_hash = 0;  ///< over pose and features: the first frame that differs names the divergence

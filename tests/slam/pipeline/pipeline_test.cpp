@@ -16,6 +16,7 @@ using testing::HasSubstr;
 constexpr double kDeg = std::numbers::pi / 180;
 constexpr TrackingStatus kStarted = TrackingStatus::kStarted;
 constexpr TrackingStatus kTracking = TrackingStatus::kTracking;
+constexpr TrackingStatus kRepeated = TrackingStatus::kRepeated;
 constexpr TrackingStatus kLost = TrackingStatus::kLost;
 
 double distance_m(const Pose& a, const Pose& b) { return (a.translation() - b.translation()).norm(); }
@@ -180,6 +181,50 @@ TEST_F(PipelineTest, AShortBlackoutIsBridgedWithinTheSegment) {
   }
   EXPECT_THAT(statuses,
               ElementsAre(kStarted, kTracking, kTracking, kTracking, kLost, kLost, kTracking, kTracking));
+}
+
+TEST_F(PipelineTest, ARepeatedPairIsCarriedByThePlan) {
+  SlamOptions options;
+  options.tracking.hold_lost_s = 0.3;  // two frames
+  Pipeline core(room_.rig(), options);
+  std::vector<TrackingStatus> statuses;
+  StereoFrame last;
+  for (int64_t i = 0; i < 12; ++i) {
+    StereoFrame frame = room_.frame(i);
+    const bool repeated = i == 3 || (i >= 6 && i < 9);
+    if (repeated) {
+      frame.left = last.left;
+      frame.right = last.right;
+    }
+    const FrameResult result = core.process(frame);
+    statuses.push_back(result.status);
+    EXPECT_EQ(result.message, repeated ? "the images are those of the frame before" : "");
+    EXPECT_EQ(result.segment, 0);
+    EXPECT_EQ(result.features.empty(), repeated);
+    EXPECT_LT(distance_m(result.T_map_left, room_.T_map_left(static_cast<double>(i))), 0.01) << i;
+    last = frame;
+  }
+  EXPECT_THAT(statuses, ElementsAre(kStarted, kTracking, kTracking, kRepeated, kTracking, kTracking,
+                                    kRepeated, kRepeated, kLost, kTracking, kTracking, kTracking));
+  for (int64_t i = 0; i < 12; ++i) {
+    const Pose truth = room_.T_map_left(static_cast<double>(i));
+    EXPECT_LT(distance_m(core.trajectory()[static_cast<size_t>(i)].T, truth), 0.01) << i;
+  }
+}
+
+TEST_F(PipelineTest, WithoutAPlanARepeatedPairIsWhereItWas) {
+  Pipeline core(room_.rig(), {});
+  StereoFrame frame;
+  for (int64_t i = 0; i < 4; ++i) {
+    const auto step = static_cast<double>(i);
+    frame = room_.frame(i, step, step - 1, false);
+    core.process(frame);
+  }
+  frame.index = 4;
+  frame.stamp_ns = room_.frame(4).stamp_ns;
+  const FrameResult result = core.process(frame);
+  EXPECT_EQ(result.status, kTracking) << "the robot may have stopped";
+  EXPECT_LT(distance_m(result.T_map_left, room_.T_map_left(3)), 0.01);
 }
 
 TEST_F(PipelineTest, WhatIsBlownOutIsNotMissed) {
