@@ -79,15 +79,17 @@ Metrics trajectory_metrics(const PosePairs& pairs, const Eigen::Vector3d& up_tru
   return metrics;
 }
 
-Metrics tracking_metrics(const std::vector<slam::TrackingStatus>& frames) {
+Metrics tracking_metrics(const std::vector<slam::FrameResult>& frames) {
   if (frames.empty()) return {};
   const auto count = [&](slam::TrackingStatus status) {
-    return static_cast<double>(std::count(frames.begin(), frames.end(), status));
+    return static_cast<double>(std::count_if(frames.begin(), frames.end(),
+                                             [&](const slam::FrameResult& f) { return f.status == status; }));
   };
-  const double first = frames.front() == slam::TrackingStatus::kStarted ? 1 : 0;
+  const double first = frames.front().status == slam::TrackingStatus::kStarted ? 1 : 0;
   return {{"trajectory.lost_frames", count(slam::TrackingStatus::kLost)},
           {"trajectory.completeness",
-           (count(slam::TrackingStatus::kTracking) + first) / static_cast<double>(frames.size())}};
+           (count(slam::TrackingStatus::kTracking) + first) / static_cast<double>(frames.size())},
+          {"tracking.row_offset_px", frames.back().row_offset_px}};
 }
 
 }  // namespace groundloop::bench

@@ -38,8 +38,10 @@ EndError end_error(const PosePairs& pairs, const Eigen::Vector3d& up_truth);
 Metrics trajectory_metrics(const PosePairs& pairs,
                            const Eigen::Vector3d& up_truth = Eigen::Vector3d::UnitZ());
 
-/// trajectory.lost_frames (frames with status lost) and trajectory.completeness: the part of the frames whose
-/// pose came from vision, or that started the first segment, in [0, 1]. No frames: empty.
-Metrics tracking_metrics(const std::vector<slam::TrackingStatus>& frames);
+/// What the core says of its tracking: trajectory.lost_frames (frames with status lost),
+/// trajectory.completeness (the part of the frames whose pose came from vision, or that started the first
+/// segment, in [0, 1]) and tracking.row_offset_px (by which the right image was moved back at the end). No
+/// frames: empty.
+Metrics tracking_metrics(const std::vector<slam::FrameResult>& frames);
 
 }  // namespace groundloop::bench

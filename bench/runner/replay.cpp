@@ -121,9 +121,7 @@ RunOutcome replay(const ReplayOptions& options, const JobControl& control) {
 
   RunOutcome outcome{name, 0, folder, 0, {}, {}, {}};
   Metrics& metrics = outcome.metrics;
-  std::vector<slam::TrackingStatus> statuses;
-  for (const slam::FrameResult& frame : core_run.frames) statuses.push_back(frame.status);
-  metrics = tracking_metrics(statuses);
+  metrics = tracking_metrics(core_run.frames);
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   std::vector<FrameNotes> notes(core_run.frames.size(),
                                 {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, ""});

@@ -73,9 +73,7 @@ RunJudgement RunJudge::judge(const std::vector<slam::FrameResult>& frames) {
   run.truth = left_truth(source_, frames.size());
   PosePairs pairs{run.truth, core_.trajectory()};
   run.metrics = trajectory_metrics(pairs);
-  std::vector<slam::TrackingStatus> statuses;
-  for (const slam::FrameResult& frame : frames) statuses.push_back(frame.status);
-  run.metrics.merge(tracking_metrics(statuses));
+  run.metrics.merge(tracking_metrics(frames));
   run.metrics.merge(recovery_.metrics());
   run.metrics.merge(stages_.total().metrics());
   run.metrics.merge(uncertainty());

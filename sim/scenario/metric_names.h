@@ -22,6 +22,7 @@ inline constexpr auto kMetricNames = std::to_array<const char*>({
     "tracking.interruptions",
     "tracking.relocalised_s",
     "tracking.silent_jumps",
+    "tracking.row_offset_px",
     "map.f1",
     "map.iou",
     "map.mcc",

@@ -21,11 +21,19 @@ FrontEnd::FrontEnd(const StereoRig& rig, const SlamOptions& options, const Oracl
       detector_(options.detection),
       dense_(options.disparity),
       matcher_(rig, options.stereo, options.klt),
+      rows_(options.stereo),
       tracker_(rig, options.tracking, options.klt, matcher_),
       rotation_(rig),
       registration_(rig, options.registration) {}
 
+StereoFrame FrontEnd::rows_aligned(const StereoFrame& frame) {
+  StereoFrame aligned = frame;
+  aligned.right = rows_.aligned(frame.right);
+  return aligned;
+}
+
 void FrontEnd::see(const StereoFrame& frame, StageClock& clock) {
+  row_differences_px_.clear();
   left_.build(frame.left, options_.klt.levels);
   right_.build(frame.right, options_.klt.levels);
   clock.lap(Stage::kPyramid);
@@ -64,6 +72,7 @@ const RegistrationResult& FrontEnd::follow(const StereoFrame& frame, const Pose&
     align(registered_.T_from_to);
   }
   rotation_.remember(left_);
+  for (const Feature& feature : tracker_.features()) note_row(feature);
   distrust_few(expected);
   return registered_;
 }
@@ -194,7 +203,7 @@ void FrontEnd::add_features(const StereoFrame& frame, StageClock& clock) {
   clock.lap(Stage::kStereo);
 }
 
-bool FrontEnd::match(int64_t frame, Feature& feature) const {
+bool FrontEnd::match(int64_t frame, Feature& feature) {
   if (replaced(OracleStage::kStereo)) {
     const std::optional<double> disparity = oracle_->disparity_px(frame, feature.left.uv_px.cast<double>());
     if (!disparity) return false;
@@ -203,8 +212,16 @@ bool FrontEnd::match(int64_t frame, Feature& feature) const {
     return matcher_.plausible(feature.left.uv_px, feature.right.uv_px);
   }
   const auto right = matcher_.match(tracker_.first_view(feature), feature.left, dense_, right_);
-  if (right) feature.right = *right;
-  return right.has_value();
+  if (!right) return false;
+  feature.right = *right;
+  feature.found_right = true;
+  note_row(feature);
+  return matcher_.plausible(feature.left.uv_px, feature.right.uv_px);
+}
+
+void FrontEnd::note_row(const Feature& feature) {
+  if (!feature.found_right) return;
+  row_differences_px_.push_back(feature.right.uv_px.y() - feature.left.uv_px.y());
 }
 
 void FrontEnd::measure_key_frame() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <vector>
 
 #include "slam/features/detector.h"
@@ -9,6 +10,7 @@
 #include "slam/registration/registration.h"
 #include "slam/stereo/disparity.h"
 #include "slam/stereo/matcher.h"
+#include "slam/stereo/row_alignment.h"
 #include "slam/tracking/rotation_alignment.h"
 #include "slam/tracking/tracker.h"
 #include "slam/types/frame_result.h"
@@ -25,7 +27,9 @@ class FrontEnd {
   /// @param oracle  answers in the place of a stage, in experiments; may be null, must outlive this
   FrontEnd(const StereoRig& rig, const SlamOptions& options, const Oracle* oracle);
 
-  /// Takes the images of a new frame.
+  /// The frame with the right image's rows where they belong.
+  StereoFrame rows_aligned(const StereoFrame& frame);
+  /// Takes the images of a new frame, rows aligned.
   void see(const StereoFrame& frame, StageClock& clock);
 
   /// Tracks the features of the last key frame and registers their new reconstruction with the old one.
@@ -40,6 +44,11 @@ class FrontEnd {
   /// @param T_kf_left    its pose in the last key frame
   /// @param reconstruct  true: every feature's point is triangulated anew; false: it is carried over
   void renew(const StereoFrame& frame, const Pose& T_kf_left, bool reconstruct, StageClock& clock);
+
+  /// Learns from all matches of the current frame whether its rows are right.
+  /// @return what most of them are off by alike [px]; none when there is nothing of the kind
+  std::optional<double> check_rows() { return rows_.observe(row_differences_px_); }
+  double row_offset_px() const { return rows_.offset_px(); }  ///< see RowAlignment
 
   /// Features of the last key frame, with their points there.
   std::vector<Feature>& features() { return tracker_.features(); }
@@ -68,7 +77,8 @@ class FrontEnd {
   void triangulate_again();
   void carry_over(const Pose& T_kf_left);
   void add_features(const StereoFrame& frame, StageClock& clock);
-  bool match(int64_t frame, Feature& feature) const;
+  bool match(int64_t frame, Feature& feature);
+  void note_row(const Feature& feature);
   void measure_key_frame();
 
   StereoRig rig_;
@@ -77,6 +87,7 @@ class FrontEnd {
   Detector detector_;
   DenseDisparity dense_;
   StereoMatcher matcher_;
+  RowAlignment rows_;
   Tracker tracker_;
   RotationAlignment rotation_;
   Registration registration_;
@@ -85,6 +96,7 @@ class FrontEnd {
   std::vector<PointPair> pairs_;
   std::vector<size_t> pair_feature_;  ///< index into features(), per pair
   RegistrationResult registered_;
+  std::vector<float> row_differences_px_;  ///< of the current frame's matches
   std::vector<Eigen::Vector2f> occupied_;
   std::vector<double> depths_m_;
 

@@ -45,8 +45,9 @@ struct Pipeline::Impl {
 
   Impl(const StereoRig& stereo_rig, const SlamOptions& slam_options, const Oracle* oracle);
 
-  void process(const StereoFrame& frame, FrameResult& result);
+  void process(const StereoFrame& delivered, FrameResult& result);
   void take_results(int64_t frame_index, FrameResult& result);
+  void check_rows(FrameResult& result);
   void hold(const StereoFrame& frame, FrameResult& result);
   bool held_too_long(const StereoFrame& frame) const;
   void track_frame(const StereoFrame& frame, StageClock& clock, FrameResult& result);
@@ -165,10 +166,12 @@ Pipeline::Impl::Impl(const StereoRig& stereo_rig, const SlamOptions& slam_option
       mapping(options.background.threads) {}
 
 /// One stereo pair, in the order of the paper's section 2.
-void Pipeline::Impl::process(const StereoFrame& frame, FrameResult& result) {
-  check(frame);
+void Pipeline::Impl::process(const StereoFrame& delivered, FrameResult& result) {
+  check(delivered);
+  const StereoFrame frame = front.rows_aligned(delivered);
   result.index = frame.index;
   result.stamp_ns = frame.stamp_ns;
+  result.row_offset_px = front.row_offset_px();
   StageClock clock(result);
   take_results(frame.index, result);
   clock.restart();
@@ -177,7 +180,7 @@ void Pipeline::Impl::process(const StereoFrame& frame, FrameResult& result) {
   } else {
     T_kf_planned.reset();
   }
-  if (repeated_pair.is(frame) && started && known_ns == seen_ns) {
+  if (repeated_pair.is(delivered) && started && known_ns == seen_ns) {
     hold(frame, result);
     record(frame, result);
     return;
@@ -196,8 +199,17 @@ void Pipeline::Impl::process(const StereoFrame& frame, FrameResult& result) {
       make_key_frame(frame, clock, result);
     }
   }
+  check_rows(result);
   T_kf_seen = T_kf_left;
   record(frame, result);
+}
+
+/// What all matches of the pair say of its rows holds from the next pair on.
+void Pipeline::Impl::check_rows(FrameResult& result) {
+  const std::optional<double> off_px = front.check_rows();
+  if (off_px && result.status == TrackingStatus::kLost) {
+    result.message = fmt::format("most matches are {:.1f} px beside their rows", *off_px);
+  }
 }
 
 /// A pair that was seen before tells nothing of the time of its stamp: the plan goes on from the last pose.

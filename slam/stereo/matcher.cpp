@@ -15,7 +15,6 @@ std::optional<AffineState> StereoMatcher::match(const PatchTemplate& patch, cons
   const Eigen::Vector2f predicted_px = state.uv_px;
   if (track_affine(patch, right, klt_, 1, state) != KltStatus::kTracked) return std::nullopt;
   if (std::abs(state.uv_px.x() - predicted_px.x()) > options_.max_prediction_error_px) return std::nullopt;
-  if (!plausible(left.uv_px, state.uv_px)) return std::nullopt;
   return state;
 }
 

@@ -14,12 +14,14 @@ struct StereoOptions {
   double epipolar_gate_px = 0.8;       ///< largest row difference of a match
   double min_disparity_px = 1.0;       ///< beyond the disparity at infinity; smaller ones carry no depth
   double max_prediction_error_px = 6;  ///< farther from the dense disparity is another surface
+  double max_row_offset_px = 5;        ///< largest slip of the right image's rows that is taken back; 0: none
 
   template <class Archive>
   void visit(Archive& a) {
     a("epipolar_gate_px", epipolar_gate_px, {.min = 0.01, .max = 20});
     a("min_disparity_px", min_disparity_px, {.min = 0, .max = 100});
     a("max_prediction_error_px", max_prediction_error_px, {.min = 0.5, .max = 100});
+    a("max_row_offset_px", max_row_offset_px, {.min = 0, .max = 100});
   }
 };
 
@@ -31,7 +33,8 @@ class StereoMatcher {
       : rig_(rig), options_(options), klt_(klt) {}
 
   /// @param left  where the feature is in the left image
-  /// @return where it is in the right one; none when the dense map knows nothing or the match is not credible
+  /// @return where it is in the right one, which plausible() has to check; none when the dense map knows
+  ///         nothing of it, or something else
   std::optional<AffineState> match(const PatchTemplate& patch, const AffineState& left,
                                    const DenseDisparity& dense, const ImagePyramid& right) const;
 

@@ -20,7 +20,8 @@ struct Feature {
   AffineState right;
   Eigen::Matrix2f shape_before = Eigen::Matrix2f::Identity();  ///< shape in the previous left image
   bool in_left = false;                                        ///< found in the current left image
-  bool in_right = false;  ///< found in the current right image, and left-right plausible
+  bool found_right = false;                                    ///< found in the current right image
+  bool in_right = false;                                       ///< found there, and left-right plausible
 
   Eigen::Vector3d p_kf = Eigen::Vector3d::Zero();  ///< in the left camera of the last key frame [m]
   Eigen::Matrix3d covariance_kf = Eigen::Matrix3d::Identity();

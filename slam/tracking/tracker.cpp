@@ -35,7 +35,7 @@ void Tracker::track(const ImagePyramid& left, const ImagePyramid& right, const P
     const Eigen::Vector3d p_previous = T_previous_kf * feature.p_kf;
     const Eigen::Vector3d p_left = T_left_kf * feature.p_kf;
     if (p_previous.z() < kMinDepth_m || p_left.z() < kMinDepth_m) {
-      feature.in_left = feature.in_right = false;
+      feature.in_left = feature.found_right = feature.in_right = false;
       continue;
     }
     const Eigen::Vector3d now = rig_.project(p_left), before = rig_.project(p_previous);
@@ -75,11 +75,11 @@ void Tracker::track_again(const ImagePyramid& left, const ImagePyramid& right, c
 void Tracker::track_one(const ImagePyramid& left, const ImagePyramid& right, const AffineState& start_left,
                         const AffineState& start_right, int start_level, Feature& feature) const {
   const PatchTemplate& patch = first_view(feature);
-  feature.in_right = false;
+  feature.found_right = feature.in_right = false;
   feature.in_left = find(patch, left, start_left, start_level, feature.left);
   if (!feature.in_left) return;
-  feature.in_right = find(patch, right, start_right, start_level, feature.right) &&
-                     matcher_.plausible(feature.left.uv_px, feature.right.uv_px);
+  feature.found_right = find(patch, right, start_right, start_level, feature.right);
+  feature.in_right = feature.found_right && matcher_.plausible(feature.left.uv_px, feature.right.uv_px);
 }
 
 bool Tracker::find(const PatchTemplate& patch, const ImagePyramid& image, const AffineState& start,

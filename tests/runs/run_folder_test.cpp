@@ -74,6 +74,7 @@ TEST(RunFolder, IsCompleteAndAgreesWithItself) {
                            "stage.point_rmse_m",
                            "tracking.interruptions",
                            "tracking.silent_jumps",
+                           "tracking.row_offset_px",
                            "timing.render_ms",
                            "timing.slam_ms_median",
                            "timing.slam_ms_p99",

@@ -145,21 +145,34 @@ TEST(TrajectoryMetrics, OfOnePoseAreZero) {
   EXPECT_EQ(metrics.at("trajectory.length_m"), 0);
 }
 
+std::vector<slam::FrameResult> frames_of(const std::vector<TrackingStatus>& statuses) {
+  std::vector<slam::FrameResult> frames(statuses.size());
+  for (size_t i = 0; i < frames.size(); ++i) frames[i].status = statuses[i];
+  return frames;
+}
+
 TEST(TrackingMetrics, CountLostFramesAndThoseWithAPoseFromVision) {
-  // lost for two frames, then a new segment that starts from the plan
+  // lost for two frames, then a new segment that starts from the plan; then a pair that is repeated
   const Metrics metrics =
-      tracking_metrics({TrackingStatus::kStarted, TrackingStatus::kTracking, TrackingStatus::kLost,
-                        TrackingStatus::kLost, TrackingStatus::kStarted, TrackingStatus::kTracking,
-                        TrackingStatus::kTracking, TrackingStatus::kTracking});
+      tracking_metrics(frames_of({TrackingStatus::kStarted, TrackingStatus::kTracking, TrackingStatus::kLost,
+                                  TrackingStatus::kLost, TrackingStatus::kStarted, TrackingStatus::kTracking,
+                                  TrackingStatus::kRepeated, TrackingStatus::kTracking}));
   EXPECT_EQ(metrics.at("trajectory.lost_frames"), 2);
-  EXPECT_DOUBLE_EQ(metrics.at("trajectory.completeness"), 5.0 / 8);
+  EXPECT_DOUBLE_EQ(metrics.at("trajectory.completeness"), 4.0 / 8);
 }
 
 TEST(TrackingMetrics, OfARunWithoutLossesAreComplete) {
-  const Metrics metrics = tracking_metrics({TrackingStatus::kStarted, TrackingStatus::kTracking});
+  const Metrics metrics = tracking_metrics(frames_of({TrackingStatus::kStarted, TrackingStatus::kTracking}));
   EXPECT_EQ(metrics.at("trajectory.lost_frames"), 0);
   EXPECT_EQ(metrics.at("trajectory.completeness"), 1);
+  EXPECT_EQ(metrics.at("tracking.row_offset_px"), 0);
   EXPECT_TRUE(tracking_metrics({}).empty());
+}
+
+TEST(TrackingMetrics, TellTheRowOffsetOfTheEnd) {
+  std::vector<slam::FrameResult> frames = frames_of({TrackingStatus::kStarted, TrackingStatus::kTracking});
+  frames.back().row_offset_px = 1.2;
+  EXPECT_EQ(tracking_metrics(frames).at("tracking.row_offset_px"), 1.2);
 }
 
 }  // namespace

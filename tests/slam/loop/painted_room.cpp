@@ -91,7 +91,7 @@ LoopKeyFrame make_key_frame(const StereoRig& rig, int64_t index, const cv::Mat& 
     AffineState state;
     state.uv_px = corner;
     const auto match = matcher.match(patch, state, dense, right_pyramid);
-    if (!match) continue;
+    if (!match || !matcher.plausible(corner, match->uv_px)) continue;
     const Eigen::Vector3d uvu = optimal_measurement(corner, match->uv_px);
     const double variance = point_covariance(rig, uvu, RegistrationOptions{}.sigma_px)(2, 2);
     key_frame.landmarks.push_back(

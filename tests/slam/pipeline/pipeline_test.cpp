@@ -227,6 +227,31 @@ TEST_F(PipelineTest, WithoutAPlanARepeatedPairIsWhereItWas) {
   EXPECT_LT(distance_m(result.T_map_left, room_.T_map_left(3)), 0.01);
 }
 
+TEST_F(PipelineTest, ASlipOfTheRightImageIsFoundAndTakenBack) {
+  constexpr int kSlip_px = 2;
+  Pipeline core(room_.rig(), {}), paper(room_.rig(), preset("paper"));
+  std::vector<TrackingStatus> statuses;
+  int lost_by_paper = 0;
+  for (int64_t i = 0; i < 12; ++i) {
+    StereoFrame frame = room_.frame(i);
+    if (i >= 4) {
+      cv::Mat slipped = frame.right.clone();
+      frame.right.rowRange(0, frame.right.rows - kSlip_px).copyTo(slipped.rowRange(kSlip_px, slipped.rows));
+      frame.right = slipped;
+    }
+    const FrameResult result = core.process(frame);
+    statuses.push_back(result.status);
+    EXPECT_NEAR(result.row_offset_px, i < 7 ? 0 : kSlip_px, i < 7 ? 0 : 0.05) << i;
+    EXPECT_EQ(result.message, i >= 4 && i < 7 ? "most matches are 2.0 px beside their rows" : "") << i;
+    EXPECT_EQ(result.segment, 0);
+    EXPECT_LT(distance_m(result.T_map_left, room_.T_map_left(static_cast<double>(i))), 0.02) << i;
+    lost_by_paper += paper.process(frame).status == kLost;
+  }
+  EXPECT_THAT(statuses, ElementsAre(kStarted, kTracking, kTracking, kTracking, kLost, kLost, kLost, kTracking,
+                                    kTracking, kTracking, kTracking, kTracking));
+  EXPECT_EQ(lost_by_paper, 8) << "which is left as it was published";
+}
+
 TEST_F(PipelineTest, WhatIsBlownOutIsNotMissed) {
   // A flash: most features are in white, where nothing can be seen. Those that are left are few of all.
   constexpr double kFlash = 2;

