@@ -16,10 +16,10 @@ struct AdjustmentOptions {
   double sigma_px = 0.12;       ///< standard deviation of one image coordinate of a tracked feature
   double lorentz_scale = 1.0;   ///< in standard deviations: larger misfits lose weight
   double outlier_sigmas = 5.0;  ///< misfit in standard deviations from which an observation counts as false
-  /// Variance of the motions, relative to what the misfits tell: a feature is always compared with its first
-  /// view, so that its errors in successive key frames are alike. Measured: key-frame motions of two drives
-  /// have a mean NEES of 6 with it.
-  double error_likeness = 2.8;
+  /// Variance of the motions, relative to that of landmarks which err independently of each other: windows on
+  /// one surface err alike. Measured: key-frame motions of drives through several rooms have a mean NEES
+  /// of 6.
+  double error_likeness = 1.2;
   double planar_height_sigma_m = 0;  ///< soft planar motion: height of the body over the plane; 0: off
   double planar_tilt_sigma_deg = 0;  ///< soft planar motion: roll and pitch of the body; 0: off
   double plan_sigma_ratio = 0;  ///< deviation of a planned motion relative to its length and angle; 0: off
@@ -85,12 +85,9 @@ struct AdjustmentResult {
   /// Per landmark [m^2], in odom: of its position when the poses are given (conditional, not marginal). Zero
   /// for a landmark that its observations do not determine.
   std::vector<Eigen::Matrix3d> landmark_covariance;
-  /// Per key frame k >= 1: covariance of T_(k-1)_(k), landmarks and other poses integrated out; right
-  /// perturbation in key frame k. Entry 0, and pairs of two anchors, are zero.
+  /// Per key frame k >= 1: covariance of T_(k-1)_(k) by the misfits, landmarks and other poses integrated
+  /// out; right perturbation in key frame k. Entry 0, and pairs of two anchors, are zero.
   std::vector<Matrix6d> motion_covariance;
-  /// How much larger the variance of the observations is than stated by their sigma, from the median of their
-  /// squared misfits; about 0.9 when it is as stated. The covariances are for the stated sigma.
-  double variance_factor = 0;
   double cost_before = 0, cost_after = 0;  ///< sum k^2 log(1 + s / k^2) over observations, plus the priors
   int iterations = 0;
 };

@@ -15,7 +15,9 @@ namespace {
 constexpr double kFirstDamping = 1e-6, kLeastDamping = 1e-12, kMostDamping = 1e6;
 constexpr double kConverged = 1e-12;     // decrease of the cost, relative to it
 constexpr double kLeastPivot = 1e-8;     // of a matrix that is not singular, see regular()
-constexpr double kChi2Median3 = 2.3660;  // median of chi-square with three degrees of freedom
+constexpr double kLeastVariance = 0.01;  // relative to the stated noise: images have rounded grey values
+constexpr double kLeastSlope =
+    0.1;  // relative to the weights: where misfits are few, it may come out as nothing
 
 using LowerFactor = Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>;
 
@@ -32,6 +34,14 @@ bool invert(const Eigen::Matrix3d& H, Eigen::Matrix3d& inverse) {
   if (llt.info() != Eigen::Success || !regular(llt.matrixLLT(), H.diagonal())) return false;
   inverse = llt.solve(Eigen::Matrix3d::Identity());
   return true;
+}
+
+/// Mean share of the diagonal of H that that of `part` has.
+template <class Matrix>
+double size_of(const Matrix& part, const Eigen::Ref<Eigen::MatrixXd>& H) {
+  const auto informed = H.diagonal().array() > 0;
+  const auto share = informed.select(part.diagonal().array() / H.diagonal().array(), 0);
+  return share.sum() / std::max<double>(1, static_cast<double>(informed.count()));
 }
 
 }  // namespace
@@ -55,7 +65,7 @@ void WindowAdjustment::solve(const AdjustmentProblem& problem, AdjustmentResult&
   result.inliers = 0;
   result.landmark_covariance.assign(problem.landmarks_odom.size(), Eigen::Matrix3d::Zero());
   result.motion_covariance.assign(problem.key_frames.size(), Matrix6d::Zero());
-  result.variance_factor = result.cost_before = result.cost_after = 0;
+  result.cost_before = result.cost_after = 0;
   result.iterations = 0;
 
   if (!prepare(problem, result.message)) return;
@@ -102,6 +112,7 @@ bool WindowAdjustment::prepare(const AdjustmentProblem& problem, std::string& me
   inverse_ll_.resize(landmarks);
   own_step_.resize(landmarks);
   terms_.resize(unknown_.size());
+  slope_xl_.resize(unknown_.size());
   if (H_.rows() < unknowns_) {
     H_.resize(unknowns_, unknowns_);
     noise_.resize(unknowns_, unknowns_);
@@ -333,80 +344,96 @@ bool WindowAdjustment::step() {
   return true;
 }
 
-/// The estimate follows the noise as x = H^-1 J^T W noise, with the robust weights W as they came out: its
-/// covariance is H^-1 (J^T W^2 J) H^-1, reduced to the poses like H itself. H^-1 alone would be half as large
-/// again at a scale of 2: it takes the weights for less precise measurements. That the weights follow the
-/// noise of few landmarks is accounted for by Huber's factor.
+/// The estimate follows the gradients as x = J^-1 sum g_j, with J the slope of their sum and g_j what
+/// landmark j adds to it, its own position eliminated: the covariance is J^-1 (sum g_j g_j^T) J^-1, whatever
+/// the noise of a landmark is and however alike its errors in several key frames are (Liang & Zeger,
+/// "Longitudinal data analysis using generalized linear models", Biometrika 73, 1986). Of J only the size is
+/// taken, relative to the information H of the weights: with few landmarks a direction of it may happen to be
+/// flat.
 bool WindowAdjustment::uncertainty(const AdjustmentProblem& problem, AdjustmentResult& result) {
   auto noise = noise_.topLeftCorner(unknowns_, unknowns_);
-  auto covariance = covariance_.topLeftCorner(unknowns_, unknowns_);
-  clear_equations();
-  add_priors(problem);
-  covariance = H_.topLeftCorner(unknowns_, unknowns_);  // kept here: a prior has no weight
+  auto slope = covariance_.topLeftCorner(unknowns_, unknowns_);
   noise.setZero();
+  slope.setZero();
+  clear_equations();
   for (size_t j = 0; j < p_odom_.size(); ++j) {
     eliminate(j, 0);
+    add_slope(j);
     add_noise(j, result.landmark_covariance[j]);
   }
   Eigen::Ref<Eigen::MatrixXd> H = H_.topLeftCorner(unknowns_, unknowns_);
+  noise = small_sample_factor() * noise + kLeastVariance * H;
+  H *= std::max(kLeastSlope, size_of(slope, H));
+  slope = H;
+  add_priors(problem);
+  noise += H - slope;  // the noise of a prior is the stated one
   const LowerFactor llt(H);
   if (llt.info() != Eigen::Success || !regular(H, diagonal_.head(unknowns_))) {
     result.message = "the observations do not determine the key frames";
     return false;
   }
-  noise = small_sample_factor() * noise + covariance;
   noise.triangularView<Eigen::StrictlyUpper>() = noise.transpose();
   llt.solveInPlace(noise);
-  covariance = noise.transpose();
-  llt.solveInPlace(covariance);
+  slope = noise.transpose();
+  llt.solveInPlace(slope);
   motion_covariances(result);
   return true;
 }
 
-/// (1 + p / n var(psi') / E(psi')^2)^2 for p unknowns, n residuals and psi' the slope of the influence of a
-/// residual (Huber, Robust Statistics, 1981, section 7.6). The slope of w r is w across r and w (2 w - 1)
-/// along it.
-double WindowAdjustment::small_sample_factor() const {
-  double slope = 0, slope2 = 0, residuals = 0;
-  for (size_t j = 0; j < p_odom_.size(); ++j) {
-    const size_t seen = first_[j + 1] - first_[j];
-    if (seen < 2) continue;
-    residuals += 3 * static_cast<double>(seen - 1);  // one observation's worth fixes the landmark
-    for (size_t n = first_[j]; n < first_[j + 1]; ++n) {
-      const double along = 2 * weight_[n] - 1,
-                   share = static_cast<double>(seen - 1) / static_cast<double>(seen);
-      slope += share * weight_[n] * (2 + along);
-      slope2 += share * weight_[n] * weight_[n] * (2 + along * along);
+/// Adds how the reduced gradient of a landmark changes with the poses. That is less than its weights tell: w
+/// r has the slope w across a residual r and w (2 w - 1) along it.
+void WindowAdjustment::add_slope(size_t landmark) {
+  if (!determined_[landmark]) return;
+  const double k2 = options_.lorentz_scale * options_.lorentz_scale;
+  const size_t begin = first_[landmark], end = first_[landmark + 1];
+  const auto bend = [&](size_t n) { return 2 * weight_[n] * weight_[n] / k2; };
+  Eigen::Matrix3d slope_ll = Eigen::Matrix3d::Zero(), inverse;
+  for (size_t n = begin; n < end; ++n) {
+    const ObservationTerms& t = terms_[n - begin];
+    slope_ll += weight_[n] * t.H_ll - bend(n) * t.g_l * t.g_l.transpose();
+  }
+  if (!invert(slope_ll, inverse)) return;  // on the ridge between two of its observations
+  for (size_t n = begin; n < end; ++n) {
+    const int row = observations_[n].unknown;
+    if (row < 0) continue;
+    const ObservationTerms& t = terms_[n - begin];
+    slope_xl_[n - begin] = t.H_xl - bend(n) * t.g_x * t.g_l.transpose();  // eliminate() left H_xl weighted
+    const Matrix63d gain = slope_xl_[n - begin] * inverse;
+    covariance_.block<6, 6>(row, row) += weight_[n] * t.H_xx - bend(n) * t.g_x * t.g_x.transpose();
+    for (size_t m = begin; m <= n; ++m) {
+      const int column = observations_[m].unknown;
+      if (column < 0) continue;
+      covariance_.block<6, 6>(row, column).noalias() -= gain * slope_xl_[m - begin].transpose();
     }
   }
-  if (!(slope > 0)) return 1;
-  const double variation = residuals * slope2 / (slope * slope) - 1;
-  const double factor = 1 + static_cast<double>(unknowns_) / residuals * variation;
-  return factor * factor;
+}
+
+/// The gradients are those at the estimate, which has bent itself to them.
+double WindowAdjustment::small_sample_factor() const {
+  double landmarks = 0;
+  for (size_t j = 0; j < p_odom_.size(); ++j) landmarks += first_[j + 1] - first_[j] > 1 ? 1 : 0;
+  return landmarks / std::max(1.0, landmarks - static_cast<double>(unknowns_));
 }
 
 void WindowAdjustment::add_noise(size_t landmark, Eigen::Matrix3d& covariance) {
   const size_t begin = first_[landmark], end = first_[landmark + 1];
   Eigen::Matrix3d noise_ll = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d g_l = Eigen::Vector3d::Zero();
   const double gate = options_.outlier_sigmas * options_.outlier_sigmas;
-  const auto gain2 = [&](size_t n) {  // an outlier's noise is not the stated one, but its misfit
-    return weight_[n] * weight_[n] * (s_[n] > gate ? s_[n] / 3 : 1);
-  };
-  for (size_t n = begin; n < end; ++n) noise_ll += gain2(n) * terms_[n - begin].H_ll;
-  covariance = inverse_ll_[landmark] * noise_ll * inverse_ll_[landmark];
   for (size_t n = begin; n < end; ++n) {
-    const int row = observations_[n].unknown;
-    if (row < 0) continue;
-    // Of the gradients g_x - gain g_l of two key frames; eliminate() left H_xl with its weight.
-    const Matrix63d cross = gain2(n) / weight_[n] * terms_[n - begin].H_xl;
-    const Matrix63d rest = cross - gain_[n] * noise_ll;
-    noise_.block<6, 6>(row, row) += gain2(n) * terms_[n - begin].H_xx;
+    // An outlier's noise is not the stated one, but its misfit.
+    noise_ll += weight_[n] * weight_[n] * (s_[n] > gate ? s_[n] / 3 : 1) * terms_[n - begin].H_ll;
+    g_l += weight_[n] * terms_[n - begin].g_l;
+  }
+  covariance = inverse_ll_[landmark] * noise_ll * inverse_ll_[landmark];
+  if (!determined_[landmark]) return;
+  for (size_t n = begin; n < end; ++n) {
+    terms_[n - begin].g_x = weight_[n] * terms_[n - begin].g_x - gain_[n] * g_l;
+    if (observations_[n].unknown < 0) continue;
     for (size_t m = begin; m <= n; ++m) {
-      const int column = observations_[m].unknown;
-      if (column < 0) continue;
-      noise_.block<6, 6>(row, column) -=
-          rest * gain_[m].transpose() +
-          gain_[n] * (gain2(m) / weight_[m] * terms_[m - begin].H_xl).transpose();
+      if (observations_[m].unknown < 0) continue;
+      noise_.block<6, 6>(observations_[n].unknown, observations_[m].unknown).noalias() +=
+          terms_[n - begin].g_x * terms_[m - begin].g_x.transpose();
     }
   }
 }
@@ -425,24 +452,11 @@ void WindowAdjustment::motion_covariances(AdjustmentResult& result) const {
 }
 
 void WindowAdjustment::judge_observations(AdjustmentResult& result) {
-  // Part of the noise goes into the landmark, one of its observations' worth, and a little into the poses.
-  scratch_.clear();
-  size_t spare = 0;
-  for (size_t j = 0; j < p_odom_.size(); ++j) {
-    const size_t seen = first_[j + 1] - first_[j];
-    for (size_t n = first_[j]; n < first_[j + 1]; ++n) {
-      const bool agrees = s_[n] <= options_.outlier_sigmas * options_.outlier_sigmas;
-      result.inlier[static_cast<size_t>(observations_[n].input)] = agrees ? 1 : 0;
-      result.inliers += agrees ? 1 : 0;
-      if (seen > 1) scratch_.push_back(s_[n] * static_cast<double>(seen) / static_cast<double>(seen - 1));
-    }
-    spare += seen > 1 ? 3 * (seen - 1) : 0;
+  for (size_t n = 0; n < observations_.size(); ++n) {
+    const bool agrees = s_[n] <= options_.outlier_sigmas * options_.outlier_sigmas;
+    result.inlier[static_cast<size_t>(observations_[n].input)] = agrees ? 1 : 0;
+    result.inliers += agrees ? 1 : 0;
   }
-  if (scratch_.empty() || spare <= static_cast<size_t>(unknowns_)) return;
-  const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
-  std::nth_element(scratch_.begin(), middle, scratch_.end());
-  const double left = 1 - static_cast<double>(unknowns_) / static_cast<double>(spare);
-  result.variance_factor = *middle / (kChi2Median3 * left);
 }
 
 }  // namespace groundloop::slam

@@ -58,6 +58,7 @@ class WindowAdjustment {
   /// Moves poses and landmarks by the solution of H_, g_. @return false when there is none
   bool step();
   bool uncertainty(const AdjustmentProblem& problem, AdjustmentResult& result);
+  void add_slope(size_t landmark);
   void add_noise(size_t landmark, Eigen::Matrix3d& covariance);
   double small_sample_factor() const;
   void motion_covariances(AdjustmentResult& result) const;
@@ -74,12 +75,12 @@ class WindowAdjustment {
   std::vector<Pose> T_odom_left_, T_kept_;        ///< per key frame: estimate, and the last accepted
   std::vector<Eigen::Vector3d> p_odom_, p_kept_;  ///< per landmark
   std::vector<ObservationTerms> terms_;           ///< of the observations of one landmark
+  std::vector<Matrix63d> slope_xl_;               ///< of the observations of one landmark
   std::vector<double> weight_, s_;                ///< per observation: robust weight, squared misfit
   std::vector<Matrix63d> gain_;                   ///< per observation: H_xl H_ll^-1
   std::vector<uint8_t> determined_;               ///< per landmark: by its observations
   std::vector<Eigen::Matrix3d> inverse_ll_;       ///< per landmark: H_ll^-1, zero when not determined
   std::vector<Eigen::Vector3d> own_step_;         ///< per landmark: H_ll^-1 g_l
-  std::vector<double> scratch_;
 
   // Lower triangles of the leading unknowns_ x unknowns_ part; kept at the largest size so far.
   Eigen::MatrixXd H_;           ///< reduced information, then its Cholesky factor

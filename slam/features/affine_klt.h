@@ -50,17 +50,21 @@ struct PatchLevel {
 struct PatchTemplate {
   std::array<PatchLevel, 6> level;
   int levels = 0;  ///< levels in use: those where the window lies inside the image and has texture
+  /// Step of position [px of the first view] that an affine alignment takes for a perspective [1 / px]: it
+  /// fits the window on average, and where the mapping bends, the centre is not where the average puts it.
+  Eigen::Matrix2f pull = Eigen::Matrix2f::Zero();
 
   /// Takes the window around (u, v) [level-0 px]. Fails when the window leaves the image at level 0 or has no
   /// texture in two directions.
   bool take(const ImagePyramid& pyramid, const Eigen::Vector2f& uv_px, int max_levels);
 };
 
-/// Where a template lies in an image: I_template(x) ~ gain * J(A x + uv) + bias.
+/// Where a template lies in an image: I_template(x) ~ gain * J(A x / (1 + c x) + uv) + bias.
 struct AffineState {
   Eigen::Vector2f uv_px = Eigen::Vector2f::Zero();
   Eigen::Matrix2f A = Eigen::Matrix2f::Identity();
-  float ncc = 0;       ///< normalised cross-correlation reached
+  Eigen::Vector2f c_per_px = Eigen::Vector2f::Zero();  ///< perspective, known from elsewhere: not estimated
+  float ncc = 0;                                       ///< normalised cross-correlation reached
   float sigma_px = 0;  ///< standard deviation of uv_px in its least certain direction
 };
 

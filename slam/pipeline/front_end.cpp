@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "slam/tracking/perspective.h"
 #include "slam/types/counter_random.h"
 #include "slam/types/stereo_uncertainty.h"
 
@@ -146,6 +147,9 @@ void FrontEnd::start(const StereoFrame& frame, StageClock& clock) {
 
 void FrontEnd::renew(const StereoFrame& frame, const Pose& T_kf_left, bool reconstruct, StageClock& clock) {
   tracker_.remove_if([](const Feature& f) { return !f.in_right || !f.is_inlier; });
+  const Pose T_left_kf = T_kf_left.inverse();
+  for (Feature& feature : tracker_.features())
+    feature.T_kf_first = renormalised(T_left_kf * feature.T_kf_first);
   if (reconstruct) {
     triangulate_again();
   } else {
@@ -196,6 +200,8 @@ void FrontEnd::add_features(const StereoFrame& frame, StageClock& clock) {
     feature->first_frame = frame.index;
     feature->p_kf = *rig_.triangulate(uvu);
     feature->covariance_kf = point_covariance(rig_, uvu, options_.registration.sigma_px);
+    feature->slope_per_px = inverse_depth_slope(feature->left, feature->right,
+                                                uvu.x() - uvu.z() - rig_.disparity_at_infinity_px());
     feature->key_frames = 1;
   }
   tracker_.remove_if([](const Feature& f) { return !f.in_right; });

@@ -20,7 +20,6 @@ namespace groundloop::slam {
 namespace {
 
 constexpr int64_t kEnd = std::numeric_limits<int64_t>::max();
-constexpr double kLeastVariance = 0.01;  // relative to the stated noise: images have rounded grey values
 
 }  // namespace
 
@@ -331,12 +330,10 @@ void Pipeline::Impl::take_adjustment(const Adjusted& adjusted) {
   // A loss of track since then has started a new window.
   if (!result.usable || numbers.back() != static_cast<int>(stops.size()) - 1) return;
   window.refine(numbers, result.T_odom_left);
-  // What the misfits say of the noise, and what they cannot say: how alike a feature's errors are.
-  const double honest = options.adjustment.error_likeness * std::max(result.variance_factor, kLeastVariance);
   for (size_t i = 0; i < numbers.size(); ++i) {
     stops[numbers[i]].T_odom_left = result.T_odom_left[i];
     if (i == 0) continue;
-    const Matrix6d covariance = honest * result.motion_covariance[i];
+    const Matrix6d covariance = options.adjustment.error_likeness * result.motion_covariance[i];
     key_frames[numbers[i]].covariance = covariance;
     known_better.push_back({numbers[i], result.T_odom_left[i], covariance});
   }

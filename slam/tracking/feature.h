@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "slam/features/affine_klt.h"
+#include "slam/types/pose.h"
 
 namespace groundloop::slam {
 
@@ -15,6 +16,10 @@ struct Feature {
 
   int64_t first_frame = 0;  ///< of its first view
   Eigen::Vector2f first_uv_px = Eigen::Vector2f::Zero();
+
+  Pose T_kf_first = Pose::Identity();  ///< left camera of its first view in that of the last key frame
+  Eigen::Vector2f slope_per_px =
+      Eigen::Vector2f::Zero();  ///< of the surface there, see inverse_depth_slope()
 
   AffineState left;
   AffineState right;

@@ -20,11 +20,14 @@ struct TrackingOptions {
   int planned_start_level = 0;  ///< the same where the robot told its motion
   double hold_lost_s = 0.45;    ///< time without a pose that is waited for before a new segment is started
 
+  /// Known perspective of a window, from its first view and the surface there, is taken off its position.
+  bool perspective = true;
   double min_kept_ratio = 0.3;  ///< agreeing features, of those that should be in view; fewer: lost
 
   template <class Archive>
   void visit(Archive& a) {
     a("min_kept_ratio", min_kept_ratio, {.min = 0, .max = 1});
+    a("perspective", perspective);
     a("max_features", max_features, {.min = 20, .max = 5000});
     a("start_level", start_level, {.min = 0, .max = 5});
     a("planned_start_level", planned_start_level, {.min = 0, .max = 5});
@@ -73,6 +76,7 @@ class Tracker {
   const PatchTemplate& first_view(const Feature& feature) const { return *templates_[feature.slot]; }
 
  private:
+  Eigen::Vector2f perspective_of(const Feature& feature, const Pose& T_left_kf) const;
   void track_one(const ImagePyramid& left, const ImagePyramid& right, const AffineState& start_left,
                  const AffineState& start_right, int start_level, Feature& feature) const;
   bool find(const PatchTemplate& patch, const ImagePyramid& image, const AffineState& start, int start_level,

@@ -12,7 +12,6 @@ double margin(int degrees, int n) { return 1.96 * std::sqrt(2.0 * degrees / n); 
 
 struct Trials {
   double nees_newest = 0, nees_all = 0;  ///< mean of e^T C^-1 e: of the newest motion, and of all of them
-  double variance_factor = 0;
 };
 
 Trials run(const WindowRecipe& recipe, double lorentz_scale, int trials) {
@@ -38,38 +37,37 @@ Trials run(const WindowRecipe& recipe, double lorentz_scale, int trials) {
       mean.nees_all += nees / static_cast<double>(newest) / trials;
       if (k == newest) mean.nees_newest += nees / trials;
     }
-    mean.variance_factor += result.variance_factor / trials;
   }
   return mean;
 }
 
 TEST(WindowUncertainty, ErrorsOfTheMotionsAreWhatItSays) {
   for (const double lorentz_scale : {1.0, 2.0}) {
-    const Trials mean = run({.landmarks = 120}, lorentz_scale, 200);
+    const Trials mean = run({.landmarks = 240}, lorentz_scale, 200);
     EXPECT_NEAR(mean.nees_newest, 6, margin(6, 200)) << "scale " << lorentz_scale;
     EXPECT_NEAR(mean.nees_all, 6, margin(6, 200)) << "scale " << lorentz_scale;
-    printf("scale %.0f: NEES newest %.2f, all %.2f, variance factor %.2f\n", lorentz_scale, mean.nees_newest,
-           mean.nees_all, mean.variance_factor);
+    printf("scale %.0f: NEES newest %.2f, all %.2f\n", lorentz_scale, mean.nees_newest, mean.nees_all);
   }
 }
+
+/// A tenth of the matches is false and tells less; the size of the slope is that of all of them together.
+constexpr double kFewGoodOnes = 0.5;
 
 TEST(WindowUncertainty, AlsoAmongFalseMatches) {
   for (const double lorentz_scale : {1.0, 2.0}) {
-    const Trials mean = run({.landmarks = 120, .outliers = 0.1}, lorentz_scale, 200);
-    EXPECT_NEAR(mean.nees_newest, 6, margin(6, 200)) << "scale " << lorentz_scale;
-    EXPECT_NEAR(mean.nees_all, 6, margin(6, 200)) << "scale " << lorentz_scale;
-    printf("scale %.0f: NEES newest %.2f, all %.2f, variance factor %.2f\n", lorentz_scale, mean.nees_newest,
-           mean.nees_all, mean.variance_factor);
+    const Trials mean = run({.landmarks = 240, .outliers = 0.1}, lorentz_scale, 200);
+    EXPECT_NEAR(mean.nees_newest, 6, margin(6, 200) + kFewGoodOnes) << "scale " << lorentz_scale;
+    EXPECT_NEAR(mean.nees_all, 6, margin(6, 200) + kFewGoodOnes) << "scale " << lorentz_scale;
+    printf("scale %.0f: NEES newest %.2f, all %.2f\n", lorentz_scale, mean.nees_newest, mean.nees_all);
   }
 }
 
-TEST(WindowUncertainty, TheVarianceFactorTellsHowWrongTheStatedSigmaIs) {
-  const double right = run({.landmarks = 120}, 2, 20).variance_factor;
-  EXPECT_NEAR(right, 1, 0.2);  // a robust fit takes the median residual a little lower
-  const double wrong = run({.landmarks = 120, .sigma_px = 0.3}, 2, 20).variance_factor;
-  EXPECT_NEAR(wrong / right, 2.25, 0.25);
-  const double foul = run({.landmarks = 120, .outliers = 0.1}, 2, 20).variance_factor;
-  EXPECT_NEAR(foul / right, 1, 0.25);
+TEST(WindowUncertainty, TheMisfitsTellHowWrongTheStatedSigmaIs) {
+  for (const double sigma_px : {0.1, 0.3}) {
+    const Trials mean = run({.landmarks = 240, .sigma_px = sigma_px}, 2, 200);
+    EXPECT_NEAR(mean.nees_all, 6, margin(6, 200)) << "sigma " << sigma_px;
+    printf("sigma %.1f px: NEES newest %.2f, all %.2f\n", sigma_px, mean.nees_newest, mean.nees_all);
+  }
 }
 
 TEST(WindowUncertainty, ErrorsOfLandmarksSeenByAnchorsAreWhatItSays) {

@@ -179,6 +179,39 @@ TEST(TrackAffine, AKnownShapeIsTakenAsStart) {
   EXPECT_GT(state.ncc, 0.98);
 }
 
+TEST(TrackAffine, AKnownPerspectiveIsTakenOff) {
+  // As on a wall that is driven along: magnified by a fifth, and more so to the right.
+  const Eigen::Vector2d at(119.5, 99.5), c(-2.5e-3, 1e-3);
+  const double scale = 1.2;
+  Eigen::Vector2d sum_without(0, 0), sum_with(0, 0);
+  int features = 0;
+  for (uint64_t seed = 1; seed <= 40; ++seed) {
+    const Texture texture(seed, 9, 50);
+    const ImagePyramid first = pyramid_of(draw(kSize, {}, [&](int u, int v) { return texture.at(u, v); }));
+    // y = s x / (1 + c x) is undone by x = y / (s - c y).
+    const ImagePyramid second = pyramid_of(draw(kSize, {}, [&](int u, int v) {
+      const Eigen::Vector2d y = Eigen::Vector2d(u, v) - at;
+      const Eigen::Vector2d x = y / (scale - c.dot(y)) + at;
+      return texture.at(x.x(), x.y());
+    }));
+    PatchTemplate patch;
+    if (!patch.take(first, at.cast<float>(), 4)) continue;
+    AffineState without;
+    without.uv_px = at.cast<float>();
+    AffineState with = without;
+    with.c_per_px = c.cast<float>();
+    if (track_affine(patch, second, KltOptions{}, 1, without) != KltStatus::kTracked) continue;
+    if (track_affine(patch, second, KltOptions{}, 1, with) != KltStatus::kTracked) continue;
+    sum_without += without.uv_px.cast<double>() - at;
+    sum_with += with.uv_px.cast<double>() - at;
+    ++features;
+  }
+  ASSERT_GT(features, 30);
+  // Of a window of evenly spread texture: A x (c x) has a mean of 18.7 px^2 A c.
+  EXPECT_GT(sum_without.norm() / features, 0.03);
+  EXPECT_LT(sum_with.norm() / features, 0.01);
+}
+
 TEST(TrackAffine, GainAndBiasDoNotMatter) {
   // Gain 1.08 and bias 6 between two pictures that are clipped nowhere.
   const Light before{0.7, 30}, after{1.08 * 0.7, 1.08 * 30 + 6};
