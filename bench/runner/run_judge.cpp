@@ -18,16 +18,16 @@ namespace {
 std::future<slam::OccupancyMap> map_at_true_poses(const slam::Pipeline& core, const SimulatedSource& source) {
   struct TrueLook {
     slam::Pose T_world_left;
-    const std::vector<slam::MapObservation>& observations;
+    slam::SharedObservations observations;
   };
   std::vector<TrueLook> looks;
   for (const slam::KeyFrameRecord& k : core.key_frames()) {
-    looks.push_back({source.truth(k.index).T_world_left, k.observations});
+    if (k.observations) looks.push_back({source.truth(k.index).T_world_left, k.observations});
   }
   return std::async(std::launch::async,
                     [rig = source.rig(), options = core.options().mapping, looks = std::move(looks)] {
                       slam::Mapper mapper(rig, options);
-                      for (const TrueLook& look : looks) mapper.add(look.T_world_left, look.observations);
+                      for (const TrueLook& look : looks) mapper.add(look.T_world_left, *look.observations);
                       return mapper.grid().map();
                     });
 }

@@ -72,7 +72,7 @@ void MapBuilder::fill(Grid& grid, const std::vector<Pose>& T_map_place, size_t l
   const size_t end = std::min(grid.T_map_left.size() + looks, looks_.size());
   for (size_t i = grid.T_map_left.size(); i < end; ++i) {
     const Pose T_map_left = T_map_place[looks_[i].place] * looks_[i].T_place_left;
-    grid.mapper.add(T_map_left, looks_[i].observations);
+    grid.mapper.add(T_map_left, *looks_[i].observations);
     grid.T_map_left.push_back(T_map_left);
   }
 }

@@ -15,12 +15,12 @@ struct SeenPoint {
   uint8_t grey = 0;
 };
 
-/// What one key frame saw, tied to a place of the map whose corrections it follows.
+/// A key frame's sight, tied to a place of the map whose corrections it follows.
 struct Look {
   int key_frame = 0;
   int place = 0;
   Pose T_place_left = Pose::Identity();
-  std::vector<MapObservation> observations;
+  SharedObservations observations;
   std::vector<SeenPoint> points;  ///< that it added to the cloud
 };
 

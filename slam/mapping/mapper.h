@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -40,6 +41,9 @@ class MapObservation {
   uint8_t weight_ = 0, sigma_ = 0;
 };
 static_assert(sizeof(MapObservation) == 8);
+
+/// What one key frame saw: written once, then shared by all that draw it.
+using SharedObservations = std::shared_ptr<const std::vector<MapObservation>>;
 
 /// Builds the global map from key frames: each one's points make a local map, which is then added to the
 /// global one. Section 2.4 of the paper.

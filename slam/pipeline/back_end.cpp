@@ -39,7 +39,9 @@ BackEndAnswer BackEnd::process(HandedOver handed_over) {
   recognise(handed_over, link);
   const double loop_ms = milliseconds_since(start);
 
-  look_densely(handed_over.sight, handed_over.look);
+  look_densely(handed_over.sight, handed_over.observations);
+  handed_over.look.observations =
+      std::make_shared<const std::vector<MapObservation>>(std::move(handed_over.observations));
   tie(handed_over.look);
   if (map_registration_) {
     map_registration_->add(handed_over.look, handed_over.sight.index, handed_over.starts_segment);
@@ -95,8 +97,8 @@ void BackEnd::tie(Look& look) const {
   look.T_place_left = here.T_place_left;
 }
 
-/// Adds points of the dense disparity to a look.
-void BackEnd::look_densely(const LoopKeyFrame& sight, Look& look) {
+/// Adds points of the dense disparity to what a key frame saw.
+void BackEnd::look_densely(const LoopKeyFrame& sight, std::vector<MapObservation>& observations) {
   if (options_.dense_map.step_px <= 0) return;
   for (const DensePoint& point : dense_points_.measure(sight.left, sight.right, sight.half_disparity)) {
     Eigen::Vector3f uvu_px = point.uvu_px;
@@ -105,8 +107,9 @@ void BackEnd::look_densely(const LoopKeyFrame& sight, Look& look) {
       if (!exact_px) continue;
       uvu_px.z() = uvu_px.x() - static_cast<float>(*exact_px);
     }
-    look.observations.push_back({uvu_px, static_cast<float>(options_.dense_map.weight), point.sigma_px});
+    observations.push_back({uvu_px, static_cast<float>(options_.dense_map.weight), point.sigma_px});
   }
+  observations.shrink_to_fit();  // kept for long
 }
 
 /// Finds the newest key frame's pose by the local map.

@@ -19,9 +19,10 @@ struct HandedOver {
   OdometryPose pose;
   std::vector<OdometryPose> known_better;  ///< earlier key frames that were refined meanwhile
   bool starts_segment = false;
-  Pose T_map_left = Pose::Identity();  ///< where it is believed to be, when it starts a segment
-  LoopKeyFrame sight;                  ///< images only when somebody looks at them
-  Look look;                           ///< its features; the back end finds its place and adds dense points
+  Pose T_map_left = Pose::Identity();        ///< where it is believed to be, when it starts a segment
+  LoopKeyFrame sight;                        ///< images only when somebody looks at them
+  Look look;                                 ///< without observations and place
+  std::vector<MapObservation> observations;  ///< its features; the back end adds dense points
 };
 
 /// What the back end knows after a key frame.
@@ -51,7 +52,7 @@ class BackEnd {
   /// Finds out where the key frame is, and makes it a place when it is a new one.
   void recognise(const HandedOver& handed_over, std::optional<LoopLink>& link);
   void tie(Look& look) const;
-  void look_densely(const LoopKeyFrame& sight, Look& look);
+  void look_densely(const LoopKeyFrame& sight, std::vector<MapObservation>& observations);
   void register_map(std::optional<LoopLink>& link);
   std::optional<LoopLink> ask_oracle(int64_t frame) const;
   int key_frame_of(int64_t frame) const;

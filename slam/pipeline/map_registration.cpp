@@ -169,7 +169,7 @@ OccupancyMap MapRegistration::local_map(const Pose& T_map_local, const std::vect
       {held_.size(), static_cast<size_t>(in_segment_), static_cast<size_t>(options_.key_frames)});
   for (size_t i = held_.size() - looks; i < held_.size(); ++i) {
     const Look& look = held_[i].look;
-    mapper.add(T_map_local.inverse() * T_map_place[look.place] * look.T_place_left, look.observations);
+    mapper.add(T_map_local.inverse() * T_map_place[look.place] * look.T_place_left, *look.observations);
   }
   return mapper.grid().map();
 }

@@ -60,7 +60,7 @@ struct Pipeline::Impl {
   void take_adjustment(const Adjusted& adjusted);
   void give_to_back_end(const StereoFrame& frame, bool starts_segment);
   void take_answer(const BackEndAnswer& answer, FrameResult& result);
-  Look look(const StereoFrame& frame);
+  Look look(const StereoFrame& frame, std::vector<MapObservation>& observations);
   std::vector<Landmark> landmarks() const;
   int64_t in_sight_since() const;
   void finish();
@@ -366,20 +366,20 @@ void Pipeline::Impl::give_to_back_end(const StereoFrame& frame, bool starts_segm
     handed_over->sight.landmarks = landmarks();
     handed_over->sight.in_sight_since = in_sight_since();
   }
-  handed_over->look = look(frame);
+  handed_over->look = look(frame, handed_over->observations);
   mapping.submit(frame.index + options.background.map_lag_frames,
                  [this, handed_over] { return back.process(std::move(*handed_over)); });
 }
 
 /// The features of a key frame for the map and the cloud. Section 2.4.
-Look Pipeline::Impl::look(const StereoFrame& frame) {
+Look Pipeline::Impl::look(const StereoFrame& frame, std::vector<MapObservation>& observations) {
   constexpr double kTrustedAfter = 3;  // key frames; a point seen once is trusted a third
   Look look;
-  look.observations.reserve(front.features().size());
+  observations.reserve(front.features().size());
   for (const Feature& feature : front.features()) {
     const Eigen::Vector3d uvu = optimal_measurement(feature.left.uv_px, feature.right.uv_px);
     const double trust = std::min(1.0, feature.key_frames / kTrustedAfter);
-    look.observations.push_back({uvu.cast<float>(), static_cast<float>(trust)});
+    observations.push_back({uvu.cast<float>(), static_cast<float>(trust)});
     // A feature enters the cloud once two key frames agree on it.
     if (feature.key_frames != 2) continue;
     look.points.push_back(

@@ -24,8 +24,8 @@ struct KeyFrameRecord {
   /// Identity at the first of a segment.
   Pose T_previous_left = Pose::Identity();
   Matrix6d covariance = Matrix6d::Zero();  ///< of T_previous_left, right perturbation
-  /// What it added to the map, known after finish(); empty when newer key frames of its place replaced it.
-  std::vector<MapObservation> observations;
+  /// What it added to the map, known after finish(); none when newer key frames of its place replaced it.
+  SharedObservations observations;
 };
 
 /// One point of the cloud.

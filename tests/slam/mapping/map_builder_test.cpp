@@ -17,19 +17,20 @@ std::vector<Look> looks_of_a_lap() {
   std::vector<Look> looks;
   for (const Pose& T_map_left : laboratory_lap(kLap)) {
     const auto k = static_cast<int>(looks.size());
-    Look look{k, k, Pose::Identity(), {}, {}};
+    std::vector<MapObservation> observations;
     for (const MapPoint& point : measure(world, laboratory_rig(), T_map_left, 300, 0.1, k)) {
       const Eigen::Vector3d uvu = laboratory_rig().project(T_map_left.inverse() * point.p_map);
-      look.observations.push_back({uvu.cast<float>(), 1});
+      observations.push_back({uvu.cast<float>(), 1});
     }
-    looks.push_back(look);
+    looks.push_back(
+        {k, k, Pose::Identity(), std::make_shared<const std::vector<MapObservation>>(observations), {}});
   }
   return looks;
 }
 
 OccupancyMap drawn_at_once(const std::vector<Look>& looks, const std::vector<Pose>& T_map_place) {
   Mapper mapper(laboratory_rig(), {});
-  for (const Look& look : looks) mapper.add(T_map_place[look.place] * look.T_place_left, look.observations);
+  for (const Look& look : looks) mapper.add(T_map_place[look.place] * look.T_place_left, *look.observations);
   return mapper.grid().map();
 }
 

@@ -69,11 +69,16 @@ class Drive {
       places_.add_place();
     }
     const Tie tie = places_.standing(k);
-    Look look{k, tie.place, tie.T_place_left, {}, {}};
+    std::vector<MapObservation> observations;
     for (const MapPoint& point : measure(world_, laboratory_rig(), truth(k), 500, 0.1, k)) {
       const Eigen::Vector3d uvu = laboratory_rig().project(truth(k).inverse() * point.p_map);
-      look.observations.push_back({uvu.cast<float>(), 1});
+      observations.push_back({uvu.cast<float>(), 1});
     }
+    const Look look{k,
+                    tie.place,
+                    tie.T_place_left,
+                    std::make_shared<const std::vector<MapObservation>>(observations),
+                    {}};
     registration_.add(look, k, k == 0);
   }
 

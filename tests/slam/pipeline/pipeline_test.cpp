@@ -68,7 +68,8 @@ TEST_P(Preset, FollowsAnArcThroughARoom) {
     EXPECT_EQ(record.index, key_frames[k]);
     EXPECT_EQ(record.stamp_ns, pose.stamp_ns);
     EXPECT_LT(distance_m(record.T_map_left, pose.T), 1e-9);
-    EXPECT_GT(record.observations.size(), 60u);
+    ASSERT_TRUE(record.observations);
+    EXPECT_GT(record.observations->size(), 60u);
     if (k > 0) {
       EXPECT_LE(record.index - key_frames[k - 1], 6) << "8 degrees are six frames";
     }
