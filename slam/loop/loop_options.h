@@ -8,8 +8,8 @@ namespace groundloop::slam {
 struct LoopOptions {
   bool enabled = true;
   int descriptors = 400;           ///< described corners a key frame
-  int landmarks = 160;             ///< stored landmarks looked for in the current images, at most
-  int candidates = 3;              ///< stored views tried a key frame
+  int landmarks = 240;             ///< stored landmarks looked for in the current images, at most
+  int candidates = 5;              ///< stored views tried a key frame
   int min_age_frames = 30;         ///< younger views, and those whose features are tracked yet, are no news
   int max_views = 1000;            ///< beyond it no further view is stored
   int min_inliers = 30;            ///< landmarks that agree on one motion
@@ -22,7 +22,7 @@ struct LoopOptions {
   double gate_sigma = 4.5;      ///< Mahalanobis distance to the predicted pose
   double margin_m = 0.05;       ///< added to the prediction's standard deviation
   double margin_deg = 1;        ///< added to the prediction's standard deviation
-  double predicted_ease = 0.5;  ///< agreement needed where a place that was out of sight is expected to a few
+  double predicted_ease = 0.4;  ///< agreement needed where a place that was out of sight is expected to a few
                                 ///< pixels, relative to the above
   int confirmations = 2;        ///< successive key frames that must agree where nothing is predicted
   double covered_ratio = 0.6;   ///< a view whose landmarks were found to this share is not stored again
