@@ -16,8 +16,7 @@ constexpr double kFirstDamping = 1e-6, kLeastDamping = 1e-12, kMostDamping = 1e6
 constexpr double kConverged = 1e-12;     // decrease of the cost, relative to it
 constexpr double kLeastPivot = 1e-8;     // of a matrix that is not singular, see regular()
 constexpr double kLeastVariance = 0.01;  // relative to the stated noise: images have rounded grey values
-constexpr double kLeastSlope =
-    0.1;  // relative to the weights: where misfits are few, it may come out as nothing
+constexpr double kLeastSlope = 0.1;      // relative to the weights: by chance it may come out as nothing
 
 using LowerFactor = Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>;
 
@@ -352,7 +351,8 @@ bool WindowAdjustment::step() {
 /// flat.
 bool WindowAdjustment::uncertainty(const AdjustmentProblem& problem, AdjustmentResult& result) {
   auto noise = noise_.topLeftCorner(unknowns_, unknowns_);
-  auto slope = covariance_.topLeftCorner(unknowns_, unknowns_);
+  auto covariance = covariance_.topLeftCorner(unknowns_, unknowns_);
+  auto& slope = covariance;  // in the same storage: what comes first
   noise.setZero();
   slope.setZero();
   clear_equations();
@@ -364,9 +364,9 @@ bool WindowAdjustment::uncertainty(const AdjustmentProblem& problem, AdjustmentR
   Eigen::Ref<Eigen::MatrixXd> H = H_.topLeftCorner(unknowns_, unknowns_);
   noise = small_sample_factor() * noise + kLeastVariance * H;
   H *= std::max(kLeastSlope, size_of(slope, H));
-  slope = H;
+  covariance = H;  // kept, to tell what the priors add
   add_priors(problem);
-  noise += H - slope;  // the noise of a prior is the stated one
+  noise += H - covariance;  // the noise of a prior is the stated one
   const LowerFactor llt(H);
   if (llt.info() != Eigen::Success || !regular(H, diagonal_.head(unknowns_))) {
     result.message = "the observations do not determine the key frames";
@@ -374,8 +374,8 @@ bool WindowAdjustment::uncertainty(const AdjustmentProblem& problem, AdjustmentR
   }
   noise.triangularView<Eigen::StrictlyUpper>() = noise.transpose();
   llt.solveInPlace(noise);
-  slope = noise.transpose();
-  llt.solveInPlace(slope);
+  covariance = noise.transpose();
+  llt.solveInPlace(covariance);
   motion_covariances(result);
   return true;
 }

@@ -152,28 +152,6 @@ float position_sigma_px(const PatchLevel& level, const AffineState& state) {
   return std::sqrt(variance * largest);
 }
 
-/// The second order of a perspective, -A x (c x), as the alignment of an affine map sees it: the step in
-/// position that answers it, per unit of c.
-Eigen::Matrix2f pull_of(const PatchLevel& level) {
-  Eigen::Matrix<float, 6, 2> products = Eigen::Matrix<float, 6, 2>::Zero();
-  Eigen::RowVector2f sum = Eigen::RowVector2f::Zero();
-  for (int row = 0; row < kPatchSize; ++row) {
-    for (int col = 0; col < kPatchSize; ++col) {
-      const int i = row * kPatchStride + col;
-      const Eigen::RowVector2f x(static_cast<float>(col - kPatchHalf), static_cast<float>(row - kPatchHalf));
-      const float gx = level.gx[i], gy = level.gy[i];
-      const Eigen::RowVector2f change = (gx * x.x() + gy * x.y()) * x;
-      const Eigen::RowVector2f half = x / kPatchHalf;
-      Eigen::Matrix<float, 6, 1> images;
-      images << gx, gy, half.x() * gx, half.y() * gx, half.x() * gy, half.y() * gy;
-      products += images * change;
-      sum += change;
-    }
-  }
-  products -= level.images * sum / kArea;
-  return (level.inverse_hessian * products).topRows<2>();
-}
-
 }  // namespace
 
 bool PatchTemplate::take(const ImagePyramid& pyramid, const Eigen::Vector2f& uv_px, int max_levels) {
@@ -183,8 +161,31 @@ bool PatchTemplate::take(const ImagePyramid& pyramid, const Eigen::Vector2f& uv_
     if (!prepare_level(pyramid.level(l), uv_px / static_cast<float>(1 << l), level[l])) break;
     levels = l + 1;
   }
-  if (levels > 0) pull = pull_of(level[0]);
+  pull.setZero();
   return levels > 0;
+}
+
+/// The second order of a perspective, -A x (c x), as the alignment of an affine map sees it: the step in
+/// position that answers it, per unit of c.
+void PatchTemplate::learn_pull() {
+  const PatchLevel& finest = level[0];
+  Eigen::Matrix<float, 6, 2> products = Eigen::Matrix<float, 6, 2>::Zero();
+  Eigen::RowVector2f sum = Eigen::RowVector2f::Zero();
+  for (int row = 0; row < kPatchSize; ++row) {
+    for (int col = 0; col < kPatchSize; ++col) {
+      const int i = row * kPatchStride + col;
+      const Eigen::RowVector2f x(static_cast<float>(col - kPatchHalf), static_cast<float>(row - kPatchHalf));
+      const float gx = finest.gx[i], gy = finest.gy[i];
+      const Eigen::RowVector2f change = (gx * x.x() + gy * x.y()) * x;
+      const Eigen::RowVector2f half = x / kPatchHalf;
+      Eigen::Matrix<float, 6, 1> images;
+      images << gx, gy, half.x() * gx, half.y() * gx, half.x() * gy, half.y() * gy;
+      products += images * change;
+      sum += change;
+    }
+  }
+  products -= finest.images * sum / kArea;
+  pull = (finest.inverse_hessian * products).topRows<2>();
 }
 
 KltStatus track_affine(const PatchTemplate& patch, const ImagePyramid& pyramid, const KltOptions& options,

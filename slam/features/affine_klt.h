@@ -52,11 +52,14 @@ struct PatchTemplate {
   int levels = 0;  ///< levels in use: those where the window lies inside the image and has texture
   /// Step of position [px of the first view] that an affine alignment takes for a perspective [1 / px]: it
   /// fits the window on average, and where the mapping bends, the centre is not where the average puts it.
+  /// Zero until learn_pull(), which only those ask for who know a perspective.
   Eigen::Matrix2f pull = Eigen::Matrix2f::Zero();
 
   /// Takes the window around (u, v) [level-0 px]. Fails when the window leaves the image at level 0 or has no
   /// texture in two directions.
   bool take(const ImagePyramid& pyramid, const Eigen::Vector2f& uv_px, int max_levels);
+  /// Fills `pull` for the window taken last.
+  void learn_pull();
 };
 
 /// Where a template lies in an image: I_template(x) ~ gain * J(A x / (1 + c x) + uv) + bias.

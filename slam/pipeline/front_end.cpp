@@ -153,7 +153,7 @@ void FrontEnd::renew(const StereoFrame& frame, const Pose& T_kf_left, bool recon
   if (reconstruct) {
     triangulate_again();
   } else {
-    carry_over(T_kf_left);
+    carry_over(T_left_kf);
   }
   add_features(frame, clock);
 }
@@ -170,8 +170,7 @@ void FrontEnd::triangulate_again() {
   });
 }
 
-void FrontEnd::carry_over(const Pose& T_kf_left) {
-  const Pose T_left_kf = T_kf_left.inverse();
+void FrontEnd::carry_over(const Pose& T_left_kf) {
   const Eigen::Matrix3d R = T_left_kf.linear();
   for (Feature& feature : tracker_.features()) {
     feature.p_kf = T_left_kf * feature.p_kf;

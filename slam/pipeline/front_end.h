@@ -75,7 +75,7 @@ class FrontEnd {
   void distrust_few(int expected);
   void register_points(const StereoFrame& frame, const Pose& T_kf_predicted);
   void triangulate_again();
-  void carry_over(const Pose& T_kf_left);
+  void carry_over(const Pose& T_left_kf);
   void add_features(const StereoFrame& frame, StageClock& clock);
   bool match(int64_t frame, Feature& feature);
   void note_row(const Feature& feature);

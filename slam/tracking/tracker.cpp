@@ -52,7 +52,7 @@ void Tracker::track(const ImagePyramid& left, const ImagePyramid& right, const P
     const Eigen::Matrix2f change = shape_change(T_left_kf * T_kf_previous, p_previous.z() / p_left.z());
     start_left.A = change * feature.left.A;
     start_right.A = change * feature.right.A;
-    start_left.c_per_px = start_right.c_per_px = perspective_of(feature, T_left_kf);
+    start_left.c_per_px = start_right.c_per_px = perspective_of(feature, T_left_kf, p_left);
     track_one(left, right, start_left, start_right, start_level, feature);
   }
 }
@@ -69,17 +69,17 @@ void Tracker::track_again(const ImagePyramid& left, const ImagePyramid& right, c
     AffineState start;
     start.A = shape_change(T_left_kf * T_kf_previous, p_previous.z() / p_left.z()) * feature.shape_before;
     start.uv_px = left_of(now);
-    start.c_per_px = perspective_of(feature, T_left_kf);
+    start.c_per_px = perspective_of(feature, T_left_kf, p_left);
     AffineState start_right = start;
     start_right.uv_px = right_of(now);
     track_one(left, right, start, start_right, options_.start_level, feature);
   }
 }
 
-Eigen::Vector2f Tracker::perspective_of(const Feature& feature, const Pose& T_left_kf) const {
+Eigen::Vector2f Tracker::perspective_of(const Feature& feature, const Pose& T_left_kf,
+                                        const Eigen::Vector3d& p_left) const {
   if (!options_.perspective) return Eigen::Vector2f::Zero();
-  return perspective_per_px(rig_, T_left_kf * feature.T_kf_first, T_left_kf * feature.p_kf,
-                            feature.slope_per_px);
+  return perspective_per_px(rig_, T_left_kf * feature.T_kf_first, p_left, feature.slope_per_px);
 }
 
 void Tracker::track_one(const ImagePyramid& left, const ImagePyramid& right, const AffineState& start_left,
@@ -117,6 +117,7 @@ Feature* Tracker::add(const ImagePyramid& left, const Eigen::Vector2f& uv_px) {
   }
   const int slot = free_slots_.back();
   if (!templates_[slot]->take(left, uv_px, klt_.levels)) return nullptr;
+  if (options_.perspective) templates_[slot]->learn_pull();
   free_slots_.pop_back();
   Feature feature;
   feature.id = next_id_++;

@@ -76,7 +76,8 @@ class Tracker {
   const PatchTemplate& first_view(const Feature& feature) const { return *templates_[feature.slot]; }
 
  private:
-  Eigen::Vector2f perspective_of(const Feature& feature, const Pose& T_left_kf) const;
+  Eigen::Vector2f perspective_of(const Feature& feature, const Pose& T_left_kf,
+                                 const Eigen::Vector3d& p_left) const;
   void track_one(const ImagePyramid& left, const ImagePyramid& right, const AffineState& start_left,
                  const AffineState& start_right, int start_level, Feature& feature) const;
   bool find(const PatchTemplate& patch, const ImagePyramid& image, const AffineState& start, int start_level,

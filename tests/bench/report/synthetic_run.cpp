@@ -12,6 +12,7 @@
 #include "bench/report/preview.h"
 #include "slam/mapping/cloud_io.h"
 #include "slam/mapping/map_io.h"
+#include "tests/slam/types/centred_rig.h"
 
 namespace groundloop::bench {
 namespace {
@@ -145,16 +146,7 @@ slam::OccupancyMap SyntheticRun::estimated_map() {
   });
 }
 
-slam::StereoRig SyntheticRun::rig() {
-  slam::StereoRig rig;
-  rig.width_px = 640;
-  rig.height_px = 480;
-  rig.fx_px = rig.fy_px = 800;
-  rig.cx_px = rig.cx_right_px = 319.5;
-  rig.cy_px = 239.5;
-  rig.baseline_m = 0.088;
-  return rig;
-}
+slam::StereoRig SyntheticRun::rig() { return slam::centred_rig(640, 480, 800, 0.088); }
 
 cv::Mat SyntheticRun::left_image() {
   cv::Mat image(480, 640, CV_8UC1);

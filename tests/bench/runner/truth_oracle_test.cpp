@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/sim/truth/scene.h"
+#include "tests/slam/types/centred_rig.h"
 
 namespace groundloop::bench {
 namespace {
@@ -17,16 +18,7 @@ using slam::StereoRig;
 /// drives: frame k is at (0.1 k, 0); from frame 10 on it looks back.
 class Oracles : public testing::Test {
  protected:
-  static StereoRig make_rig() {
-    StereoRig rig;
-    rig.width_px = 640;
-    rig.height_px = 480;
-    rig.fx_px = rig.fy_px = 500;
-    rig.cx_px = rig.cx_right_px = 319.5;
-    rig.cy_px = 239.5;
-    rig.baseline_m = 0.08;
-    return rig;
-  }
+  static StereoRig make_rig() { return slam::centred_rig(640, 480, 500, 0.08); }
   static Pose pose(int64_t frame) {
     Pose T_world_body = Pose::Identity();
     T_world_body.linear() = slam::so3_exp({0, 0, frame < 10 ? 0 : M_PI});

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "tests/sim/truth/scene.h"
+#include "tests/slam/types/centred_rig.h"
 
 namespace groundloop::sim {
 namespace {
@@ -50,16 +51,7 @@ std::set<std::pair<int, int>> cells_where(const GridGeometry& grid, const Inside
   return cells;
 }
 
-StereoRig small_rig() {
-  StereoRig rig;
-  rig.width_px = 64;
-  rig.height_px = 48;
-  rig.fx_px = rig.fy_px = 60;
-  rig.cx_px = rig.cx_right_px = 31.5;
-  rig.cy_px = 23.5;
-  rig.baseline_m = 0.1;
-  return rig;
-}
+StereoRig small_rig() { return slam::centred_rig(64, 48, 60, 0.1); }
 
 const char* const kEveryShape =
     "<geom name='floor' type='plane' size='0 0 1'/>"

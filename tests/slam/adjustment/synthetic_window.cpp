@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "tests/slam/features/texture.h"
+#include "tests/slam/types/centred_rig.h"
 
 namespace groundloop::slam {
 namespace {
@@ -22,13 +23,7 @@ bool in_picture(const StereoRig& rig, const Eigen::Vector3d& p_left) {
 }  // namespace
 
 StereoRig pioneer_rig() {
-  StereoRig rig;
-  rig.width_px = 640;
-  rig.height_px = 480;
-  rig.fx_px = rig.fy_px = 577;
-  rig.cx_px = rig.cx_right_px = 319.5;
-  rig.cy_px = 239.5;
-  rig.baseline_m = 0.088;
+  StereoRig rig = centred_rig(640, 480, 577, 0.088);
   rig.T_body_left = StereoRig::level_camera({0.1, 0.044, 0.35});
   return rig;
 }

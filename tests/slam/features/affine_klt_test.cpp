@@ -196,6 +196,7 @@ TEST(TrackAffine, AKnownPerspectiveIsTakenOff) {
     }));
     PatchTemplate patch;
     if (!patch.take(first, at.cast<float>(), 4)) continue;
+    patch.learn_pull();
     AffineState without;
     without.uv_px = at.cast<float>();
     AffineState with = without;

@@ -5,6 +5,7 @@
 #include "slam/features/detector.h"
 #include "slam/stereo/disparity.h"
 #include "slam/types/stereo_uncertainty.h"
+#include "tests/slam/types/centred_rig.h"
 
 namespace groundloop::slam {
 namespace {
@@ -14,16 +15,7 @@ const KltOptions kKlt;
 
 }  // namespace
 
-StereoRig PaintedRoom::rig() {
-  StereoRig rig;
-  rig.width_px = 320;
-  rig.height_px = 240;
-  rig.fx_px = rig.fy_px = 288;
-  rig.cx_px = rig.cx_right_px = 159.5;
-  rig.cy_px = 119.5;
-  rig.baseline_m = 0.12;
-  return rig;
-}
+StereoRig PaintedRoom::rig() { return centred_rig(320, 240, 288, 0.12); }
 
 Pose PaintedRoom::T_room_left(double x_m, double y_m, double yaw_deg) {
   Pose T_room_body = Pose::Identity();

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/slam/types/centred_rig.h"
+
 namespace groundloop::slam {
 namespace {
 
@@ -74,14 +76,7 @@ OccupancyMap RoomWorld::occupancy(const GridGeometry& geometry, double z_min_m, 
   return map;
 }
 
-StereoRig laboratory_rig() {
-  StereoRig rig;
-  rig.width_px = 640, rig.height_px = 480;
-  rig.fx_px = rig.fy_px = 576.9;
-  rig.cx_px = rig.cx_right_px = 319.5, rig.cy_px = 239.5;
-  rig.baseline_m = 0.088;
-  return rig;
-}
+StereoRig laboratory_rig() { return centred_rig(640, 480, 576.9, 0.088); }
 
 std::vector<Pose> laboratory_lap(int key_frames) {
   std::vector<Pose> poses;

@@ -3,19 +3,14 @@
 #include "slam/registration/registration.h"
 #include "slam/types/stereo_uncertainty.h"
 #include "tests/slam/features/texture.h"
+#include "tests/slam/types/centred_rig.h"
 
 namespace groundloop::slam {
 namespace {
 
 /// 300 points, a tenth of them false, from a prediction that is a little off.
 void register_300_points(benchmark::State& state, RegistrationCost cost) {
-  StereoRig rig;
-  rig.width_px = 640;
-  rig.height_px = 480;
-  rig.fx_px = rig.fy_px = 577;
-  rig.cx_px = rig.cx_right_px = 319.5;
-  rig.cy_px = 239.5;
-  rig.baseline_m = 0.088;
+  StereoRig rig = centred_rig(640, 480, 577, 0.088);
   const Pose T_from_to = se3_exp((Vector6d() << 0.01, 0, 0.1, 0, 0.03, 0).finished());
   std::vector<PointPair> pairs;
   for (uint64_t k = 0; k < 300; ++k) {

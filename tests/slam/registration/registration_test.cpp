@@ -6,6 +6,7 @@
 
 #include "slam/types/stereo_uncertainty.h"
 #include "tests/slam/features/texture.h"
+#include "tests/slam/types/centred_rig.h"
 
 namespace groundloop::slam {
 namespace {
@@ -15,16 +16,7 @@ constexpr RegistrationCost kCosts[] = {RegistrationCost::kScalarQuadratic, Regis
                                        RegistrationCost::kReprojection};
 
 /// The head of the facts: Pioneer with a 88 mm STH-MDCS.
-StereoRig head() {
-  StereoRig rig;
-  rig.width_px = 640;
-  rig.height_px = 480;
-  rig.fx_px = rig.fy_px = 577;
-  rig.cx_px = rig.cx_right_px = 319.5;
-  rig.cy_px = 239.5;
-  rig.baseline_m = 0.088;
-  return rig;
-}
+StereoRig head() { return centred_rig(640, 480, 577, 0.088); }
 
 /// 0.30 m ahead and 5 degrees to the side: one step between key frames.
 Pose step() {

@@ -5,22 +5,14 @@
 #include <opencv2/calib3d.hpp>
 
 #include "tests/slam/features/texture.h"
+#include "tests/slam/types/centred_rig.h"
 
 namespace groundloop::slam {
 namespace {
 
 const cv::Size kSize(320, 240);
 
-StereoRig rig_of_size() {
-  StereoRig rig;
-  rig.width_px = kSize.width;
-  rig.height_px = kSize.height;
-  rig.fx_px = rig.fy_px = 300;
-  rig.cx_px = rig.cx_right_px = 159.5;
-  rig.cy_px = 119.5;
-  rig.baseline_m = 0.1;
-  return rig;
-}
+StereoRig rig_of_size() { return centred_rig(kSize.width, kSize.height, 300, 0.1); }
 
 /// A wall that the right image has `disparity_px` to the left and `rows_px` lower.
 struct Wall {

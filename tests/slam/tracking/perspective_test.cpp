@@ -5,19 +5,12 @@
 
 #include <Eigen/LU>
 
+#include "tests/slam/types/centred_rig.h"
+
 namespace groundloop::slam {
 namespace {
 
-StereoRig rig_of_test() {
-  StereoRig rig;
-  rig.width_px = 640;
-  rig.height_px = 480;
-  rig.fx_px = rig.fy_px = 500;
-  rig.cx_px = rig.cx_right_px = 319.5;
-  rig.cy_px = 239.5;
-  rig.baseline_m = 0.1;
-  return rig;
-}
+StereoRig rig_of_test() { return centred_rig(640, 480, 500, 0.1); }
 
 /// A plane normal . p = distance in the left camera of the first view.
 struct Plane {

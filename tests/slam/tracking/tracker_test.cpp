@@ -6,22 +6,14 @@
 #include <numbers>
 
 #include "tests/slam/features/texture.h"
+#include "tests/slam/types/centred_rig.h"
 
 namespace groundloop::slam {
 namespace {
 
 constexpr double kDeg = std::numbers::pi / 180;
 
-StereoRig rig_of_test() {
-  StereoRig rig;
-  rig.width_px = 320;
-  rig.height_px = 240;
-  rig.fx_px = rig.fy_px = 300;
-  rig.cx_px = rig.cx_right_px = 159.5;
-  rig.cy_px = 119.5;
-  rig.baseline_m = 0.1;
-  return rig;
-}
+StereoRig rig_of_test() { return centred_rig(320, 240, 300, 0.1); }
 
 Pose motion(double x, double y, double z, double rx_deg, double ry_deg, double rz_deg) {
   Vector6d twist;
