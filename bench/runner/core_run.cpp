@@ -16,7 +16,7 @@ CoreRun run_core(slam::StereoSource& source, slam::Pipeline& core, const std::st
     if (!frame) break;
     slam::FrameResult result = core.process(*frame);
     observe(*frame, result);
-    result.features = {};
+    std::vector<slam::FeatureObservation>().swap(result.features);  // clearing would keep the storage
     run.frames.push_back(std::move(result));
     if (control.progress) control.progress(name, done + 1, total == INT64_MAX ? 0 : total);
   }
