@@ -2,46 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "slam/adjustment/factor.h"
 #include "slam/adjustment/relative_pose.h"
 
 namespace groundloop::slam {
 namespace {
 
 constexpr double kFirstDamping = 1e-6, kLeastDamping = 1e-12, kMostDamping = 1e6;
-constexpr double kConverged = 1e-12;     // decrease of the cost, relative to it
-constexpr double kLeastPivot = 1e-8;     // of a matrix that is not singular, see regular()
-constexpr double kLeastVariance = 0.01;  // relative to the stated noise: images have rounded grey values
-constexpr double kLeastSlope = 0.1;      // relative to the weights: by chance it may come out as nothing
-
-using LowerFactor = Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>;
-
-/// Whether a Cholesky factor L of H = L L^T is that of a matrix far from singular: what is left of each
-/// unknown when those before it are known no longer is a fair part of what is known of it given all others.
-template <class Factor, class Diagonal>
-bool regular(const Factor& L, const Diagonal& diagonal) {
-  return (L.diagonal().array().square() > kLeastPivot * diagonal.array()).all();
-}
-
-/// Inverse of a 3x3 information matrix; false when it is singular.
-bool invert(const Eigen::Matrix3d& H, Eigen::Matrix3d& inverse) {
-  const Eigen::LLT<Eigen::Matrix3d> llt(H);
-  if (llt.info() != Eigen::Success || !regular(llt.matrixLLT(), H.diagonal())) return false;
-  inverse = llt.solve(Eigen::Matrix3d::Identity());
-  return true;
-}
-
-/// Mean share of the diagonal of H that that of `part` has.
-template <class Matrix>
-double size_of(const Matrix& part, const Eigen::Ref<Eigen::MatrixXd>& H) {
-  const auto informed = H.diagonal().array() > 0;
-  const auto share = informed.select(part.diagonal().array() / H.diagonal().array(), 0);
-  return share.sum() / std::max<double>(1, static_cast<double>(informed.count()));
-}
+constexpr double kConverged = 1e-12;  // decrease of the cost, relative to it
 
 }  // namespace
 
@@ -111,13 +83,16 @@ bool WindowAdjustment::prepare(const AdjustmentProblem& problem, std::string& me
   inverse_ll_.resize(landmarks);
   own_step_.resize(landmarks);
   terms_.resize(unknown_.size());
-  slope_xl_.resize(unknown_.size());
+  pull_.resize(unknown_.size());
+  own_pull_.resize(unknown_.size());
+  moved_.resize(unknown_.size());
   if (H_.rows() < unknowns_) {
     H_.resize(unknowns_, unknowns_);
     noise_.resize(unknowns_, unknowns_);
     covariance_.resize(unknowns_, unknowns_);
     g_.resize(unknowns_);
     diagonal_.resize(unknowns_);
+    slope_.resize(unknowns_);
   }
   return true;
 }
@@ -206,7 +181,10 @@ bool WindowAdjustment::minimise(const AdjustmentProblem& problem, AdjustmentResu
 double WindowAdjustment::linearise(const AdjustmentProblem& problem, double damping) {
   clear_equations();
   double cost = 0;
-  for (size_t j = 0; j < p_odom_.size(); ++j) cost += eliminate(j, damping);
+  for (size_t j = 0; j < p_odom_.size(); ++j) {
+    cost += reduce(j, damping);
+    add_landmark(j);
+  }
   cost += add_priors(problem);
   H_.diagonal().head(unknowns_) += damping * diagonal_.head(unknowns_);
   return cost;
@@ -225,7 +203,7 @@ double WindowAdjustment::add_priors(const AdjustmentProblem& problem) {
   return cost;
 }
 
-double WindowAdjustment::eliminate(size_t landmark, double damping) {
+double WindowAdjustment::reduce(size_t landmark, double damping) {
   const double k2 = options_.lorentz_scale * options_.lorentz_scale;
   const size_t begin = first_[landmark], end = first_[landmark + 1];
   double cost = 0;
@@ -251,21 +229,27 @@ double WindowAdjustment::eliminate(size_t landmark, double damping) {
     return 0;
   }
   own_step_[landmark] = inverse_ll_[landmark] * g_l;
+  for (size_t n = begin; n < end; ++n)
+    gain_[n].noalias() = weight_[n] * terms_[n - begin].H_xl * inverse_ll_[landmark];
+  return cost;
+}
+
+void WindowAdjustment::add_landmark(size_t landmark) {
+  if (!determined_[landmark]) return;
+  const size_t begin = first_[landmark], end = first_[landmark + 1];
   for (size_t n = begin; n < end; ++n) {
     const int row = observations_[n].unknown;
     if (row < 0) continue;
-    ObservationTerms& t = terms_[n - begin];
-    t.H_xl *= weight_[n];
-    gain_[n].noalias() = t.H_xl * inverse_ll_[landmark];
+    const ObservationTerms& t = terms_[n - begin];
+    const Matrix63d H_xl = weight_[n] * t.H_xl;
     H_.block<6, 6>(row, row) += weight_[n] * t.H_xx;
     diagonal_.segment<6>(row) += weight_[n] * t.H_xx.diagonal();
-    g_.segment<6>(row) += weight_[n] * t.g_x - gain_[n] * g_l;
+    g_.segment<6>(row) += weight_[n] * t.g_x - H_xl * own_step_[landmark];
     for (size_t m = begin; m <= n; ++m) {
       const int column = observations_[m].unknown;
-      if (column >= 0) H_.block<6, 6>(row, column).noalias() -= t.H_xl * gain_[m].transpose();
+      if (column >= 0) H_.block<6, 6>(row, column).noalias() -= H_xl * gain_[m].transpose();
     }
   }
-  return cost;
 }
 
 double WindowAdjustment::add_motion(const MotionPrior& motion) {
@@ -341,114 +325,6 @@ bool WindowAdjustment::step() {
     p_odom_[j] += move;
   }
   return true;
-}
-
-/// The estimate follows the gradients as x = J^-1 sum g_j, with J the slope of their sum and g_j what
-/// landmark j adds to it, its own position eliminated: the covariance is J^-1 (sum g_j g_j^T) J^-1, whatever
-/// the noise of a landmark is and however alike its errors in several key frames are (Liang & Zeger,
-/// "Longitudinal data analysis using generalized linear models", Biometrika 73, 1986). Of J only the size is
-/// taken, relative to the information H of the weights: with few landmarks a direction of it may happen to be
-/// flat.
-bool WindowAdjustment::uncertainty(const AdjustmentProblem& problem, AdjustmentResult& result) {
-  auto noise = noise_.topLeftCorner(unknowns_, unknowns_);
-  auto covariance = covariance_.topLeftCorner(unknowns_, unknowns_);
-  auto& slope = covariance;  // in the same storage: what comes first
-  noise.setZero();
-  slope.setZero();
-  clear_equations();
-  for (size_t j = 0; j < p_odom_.size(); ++j) {
-    eliminate(j, 0);
-    add_slope(j);
-    add_noise(j, result.landmark_covariance[j]);
-  }
-  Eigen::Ref<Eigen::MatrixXd> H = H_.topLeftCorner(unknowns_, unknowns_);
-  noise = small_sample_factor() * noise + kLeastVariance * H;
-  H *= std::max(kLeastSlope, size_of(slope, H));
-  covariance = H;  // kept, to tell what the priors add
-  add_priors(problem);
-  noise += H - covariance;  // the noise of a prior is the stated one
-  const LowerFactor llt(H);
-  if (llt.info() != Eigen::Success || !regular(H, diagonal_.head(unknowns_))) {
-    result.message = "the observations do not determine the key frames";
-    return false;
-  }
-  noise.triangularView<Eigen::StrictlyUpper>() = noise.transpose();
-  llt.solveInPlace(noise);
-  covariance = noise.transpose();
-  llt.solveInPlace(covariance);
-  motion_covariances(result);
-  return true;
-}
-
-/// Adds how the reduced gradient of a landmark changes with the poses. That is less than its weights tell: w
-/// r has the slope w across a residual r and w (2 w - 1) along it.
-void WindowAdjustment::add_slope(size_t landmark) {
-  if (!determined_[landmark]) return;
-  const double k2 = options_.lorentz_scale * options_.lorentz_scale;
-  const size_t begin = first_[landmark], end = first_[landmark + 1];
-  const auto bend = [&](size_t n) { return 2 * weight_[n] * weight_[n] / k2; };
-  Eigen::Matrix3d slope_ll = Eigen::Matrix3d::Zero(), inverse;
-  for (size_t n = begin; n < end; ++n) {
-    const ObservationTerms& t = terms_[n - begin];
-    slope_ll += weight_[n] * t.H_ll - bend(n) * t.g_l * t.g_l.transpose();
-  }
-  if (!invert(slope_ll, inverse)) return;  // on the ridge between two of its observations
-  for (size_t n = begin; n < end; ++n) {
-    const int row = observations_[n].unknown;
-    if (row < 0) continue;
-    const ObservationTerms& t = terms_[n - begin];
-    slope_xl_[n - begin] = t.H_xl - bend(n) * t.g_x * t.g_l.transpose();  // eliminate() left H_xl weighted
-    const Matrix63d gain = slope_xl_[n - begin] * inverse;
-    covariance_.block<6, 6>(row, row) += weight_[n] * t.H_xx - bend(n) * t.g_x * t.g_x.transpose();
-    for (size_t m = begin; m <= n; ++m) {
-      const int column = observations_[m].unknown;
-      if (column < 0) continue;
-      covariance_.block<6, 6>(row, column).noalias() -= gain * slope_xl_[m - begin].transpose();
-    }
-  }
-}
-
-/// The gradients are those at the estimate, which has bent itself to them.
-double WindowAdjustment::small_sample_factor() const {
-  double landmarks = 0;
-  for (size_t j = 0; j < p_odom_.size(); ++j) landmarks += first_[j + 1] - first_[j] > 1 ? 1 : 0;
-  return landmarks / std::max(1.0, landmarks - static_cast<double>(unknowns_));
-}
-
-void WindowAdjustment::add_noise(size_t landmark, Eigen::Matrix3d& covariance) {
-  const size_t begin = first_[landmark], end = first_[landmark + 1];
-  Eigen::Matrix3d noise_ll = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d g_l = Eigen::Vector3d::Zero();
-  const double gate = options_.outlier_sigmas * options_.outlier_sigmas;
-  for (size_t n = begin; n < end; ++n) {
-    // An outlier's noise is not the stated one, but its misfit.
-    noise_ll += weight_[n] * weight_[n] * (s_[n] > gate ? s_[n] / 3 : 1) * terms_[n - begin].H_ll;
-    g_l += weight_[n] * terms_[n - begin].g_l;
-  }
-  covariance = inverse_ll_[landmark] * noise_ll * inverse_ll_[landmark];
-  if (!determined_[landmark]) return;
-  for (size_t n = begin; n < end; ++n) {
-    terms_[n - begin].g_x = weight_[n] * terms_[n - begin].g_x - gain_[n] * g_l;
-    if (observations_[n].unknown < 0) continue;
-    for (size_t m = begin; m <= n; ++m) {
-      if (observations_[m].unknown < 0) continue;
-      noise_.block<6, 6>(observations_[n].unknown, observations_[m].unknown).noalias() +=
-          terms_[n - begin].g_x * terms_[m - begin].g_x.transpose();
-    }
-  }
-}
-
-void WindowAdjustment::motion_covariances(AdjustmentResult& result) const {
-  const auto block = [&](int row, int column) -> Matrix6d {
-    if (row < 0 || column < 0) return Matrix6d::Zero();
-    return covariance_.block<6, 6>(row, column);
-  };
-  for (size_t k = 1; k < unknown_.size(); ++k) {
-    const int a = unknown_[k - 1], b = unknown_[k];
-    if (a < 0 && b < 0) continue;
-    const Pose T_a_b = T_odom_left_[k - 1].inverse() * T_odom_left_[k];
-    result.motion_covariance[k] = relative_pose_covariance(T_a_b, block(a, a), block(a, b), block(b, b));
-  }
 }
 
 void WindowAdjustment::judge_observations(AdjustmentResult& result) {

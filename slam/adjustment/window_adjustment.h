@@ -51,7 +51,11 @@ class WindowAdjustment {
   /// @return the cost there
   double linearise(const AdjustmentProblem& problem, double damping);
   void clear_equations();
-  double eliminate(size_t landmark, double damping);
+  /// Linearises what was seen of a landmark into terms_ and solves for its own position, H_ll enlarged by
+  /// 1 + damping. @return its cost; 0 when it is not determined
+  double reduce(size_t landmark, double damping);
+  /// Adds what the reduced landmark tells of the poses.
+  void add_landmark(size_t landmark);
   double add_priors(const AdjustmentProblem& problem);
   double add_motion(const MotionPrior& motion);
   double add_plane(const GroundPlane& plane, size_t key_frame);
@@ -59,8 +63,10 @@ class WindowAdjustment {
   bool step();
   bool uncertainty(const AdjustmentProblem& problem, AdjustmentResult& result);
   void add_slope(size_t landmark);
-  void add_noise(size_t landmark, Eigen::Matrix3d& covariance);
-  double small_sample_factor() const;
+  void add_noise(size_t landmark);
+  void unbend(size_t landmark);
+  Eigen::Matrix3d landmark_covariance(size_t landmark) const;
+  double small_sample_factor(int key_frame) const;
   void motion_covariances(AdjustmentResult& result) const;
   void judge_observations(AdjustmentResult& result);
 
@@ -75,18 +81,19 @@ class WindowAdjustment {
   std::vector<Pose> T_odom_left_, T_kept_;        ///< per key frame: estimate, and the last accepted
   std::vector<Eigen::Vector3d> p_odom_, p_kept_;  ///< per landmark
   std::vector<ObservationTerms> terms_;           ///< of the observations of one landmark
-  std::vector<Matrix63d> slope_xl_;               ///< of the observations of one landmark
-  std::vector<double> weight_, s_;                ///< per observation: robust weight, squared misfit
-  std::vector<Matrix63d> gain_;                   ///< per observation: H_xl H_ll^-1
-  std::vector<uint8_t> determined_;               ///< per landmark: by its observations
-  std::vector<Eigen::Matrix3d> inverse_ll_;       ///< per landmark: H_ll^-1, zero when not determined
-  std::vector<Eigen::Vector3d> own_step_;         ///< per landmark: H_ll^-1 g_l
+  std::vector<Vector6d> pull_, own_pull_,
+      moved_;                                ///< of the same: gradients, and how far they move the poses
+  std::vector<double> weight_, s_;           ///< per observation: robust weight, squared misfit
+  std::vector<Matrix63d> gain_;              ///< per observation: H_xl H_ll^-1
+  std::vector<uint8_t> determined_;          ///< per landmark: by its observations
+  std::vector<Eigen::Matrix3d> inverse_ll_;  ///< per landmark: H_ll^-1, zero when not determined
+  std::vector<Eigen::Vector3d> own_step_;    ///< per landmark: H_ll^-1 g_l
 
   // Lower triangles of the leading unknowns_ x unknowns_ part; kept at the largest size so far.
   Eigen::MatrixXd H_;           ///< reduced information, then its Cholesky factor
   Eigen::MatrixXd noise_;       ///< covariance of the reduced gradient
   Eigen::MatrixXd covariance_;  ///< of all free poses
-  Eigen::VectorXd g_, diagonal_;
+  Eigen::VectorXd g_, diagonal_, slope_;
 };
 
 }  // namespace groundloop::slam
