@@ -19,7 +19,7 @@ struct AdjustmentOptions {
   /// Variance of the motions, relative to that of landmarks which err independently of each other: windows on
   /// one surface err alike. Measured: key-frame motions of drives through several rooms have a mean NEES
   /// of 6.
-  double error_likeness = 1.2;
+  double error_likeness = 1.15;
   double planar_height_sigma_m = 0;  ///< soft planar motion: height of the body over the plane; 0: off
   double planar_tilt_sigma_deg = 0;  ///< soft planar motion: roll and pitch of the body; 0: off
   double plan_sigma_ratio = 0;  ///< deviation of a planned motion relative to its length and angle; 0: off

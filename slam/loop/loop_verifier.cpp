@@ -59,9 +59,33 @@ LoopOptions eased(LoopOptions options) {
   options.min_inliers = std::max(6, static_cast<int>(std::lround(ease * options.min_inliers)));
   options.min_inlier_ratio *= ease;
   options.min_reverse_ratio *= ease;
+  options.max_sigma_ratio /= ease;
+  options.max_sigma_deg /= ease;
   options.margin_m *= ease;
   options.margin_deg *= ease;
   return options;
+}
+
+/// A covariance with the options' margins added.
+Matrix6d with_margins(Matrix6d covariance, const LoopOptions& options) {
+  const double margin_rad = options.margin_deg * kDegree;
+  covariance.topLeftCorner<3, 3>().diagonal().array() += options.margin_m * options.margin_m;
+  covariance.bottomRightCorner<3, 3>().diagonal().array() += margin_rad * margin_rad;
+  return covariance;
+}
+
+/// What few landmarks leave open is taken as predicted, up to the margins. The link claims no more for it:
+/// its covariance remains that of the landmarks.
+void fill_in(const PosePrediction& prediction, const LoopOptions& options, LoopLink& link) {
+  const Vector6d to_prediction = se3_log(link.T_from_to.inverse() * prediction.T_from_to);
+  const Matrix6d both = link.covariance + with_margins(prediction.covariance, options);
+  link.T_from_to = link.T_from_to * se3_exp(link.covariance * both.ldlt().solve(to_prediction));
+}
+
+/// Whether in some direction a measurement is less uncertain than what is known already.
+bool tells_more(const Matrix6d& measured, const Matrix6d& known) {
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> ratio(known, measured, Eigen::EigenvaluesOnly);
+  return ratio.eigenvalues().maxCoeff() > 1;
 }
 
 /// Something nearer is seen where the landmark should be.
@@ -139,16 +163,24 @@ Verification LoopVerifier::verify(const StoredView& stored, const CurrentView& c
       found.message = message;
     }
   }
-  if (found.accepted && prediction) {
-    const double sigma =
-        contradiction_sigma(*prediction, {found.link.T_from_to, found.link.covariance}, *needed);
-    if (!(sigma <= needed->gate_sigma)) {
-      found.accepted = false;
-      found.message =
-          fmt::format("{:.1f} sigma from the predicted pose, {:.1f} allowed", sigma, options_.gate_sigma);
-    }
-  }
+  if (found.accepted && prediction) compare(*prediction, stored.was_away, *needed, found);
   return found;
+}
+
+/// Refuses a link that contradicts what is known, or tells nothing new.
+void LoopVerifier::compare(const PosePrediction& prediction, bool was_away, const LoopOptions& needed,
+                           Verification& found) const {
+  const double sigma = contradiction_sigma(prediction, {found.link.T_from_to, found.link.covariance}, needed);
+  if (!(sigma <= needed.gate_sigma)) {
+    found.accepted = false;
+    found.message =
+        fmt::format("{:.1f} sigma from the predicted pose, {:.1f} allowed", sigma, options_.gate_sigma);
+  } else if (!was_away && !tells_more(found.link.covariance, prediction.covariance)) {
+    found.accepted = false;
+    found.message = "tells less than odometry does";
+  } else if (!was_away || &needed == &eased_) {
+    fill_in(prediction, eased_, found.link);
+  }
 }
 
 bool LoopVerifier::precise_enough(const StoredView& stored, const PosePrediction& prediction) const {
@@ -205,38 +237,51 @@ Verification LoopVerifier::refine(const StoredView& stored, const CurrentView& c
   return found;
 }
 
+/// Where landmarks should be seen from another camera, those of them that should be. At most `wanted`, evenly
+/// spread over the order in which they are kept.
+void LoopVerifier::choose_visible(const std::vector<Landmark>& landmarks, const Pose& T_other_own,
+                                  bool right_too, int wanted, std::vector<Visible>& visible) const {
+  const auto inside = [this](double u, double v) {
+    return u > kBorder_px && v > kBorder_px && u < rig_.width_px - kBorder_px &&
+           v < rig_.height_px - kBorder_px;
+  };
+  const auto limit = static_cast<float>(klt_.max_scale * klt_.max_scale);
+  visible.clear();
+  for (const Landmark& landmark : landmarks) {
+    const Eigen::Vector3d p_own = point_of(rig_, landmark), p_other = T_other_own * p_own;
+    if (p_other.z() < kMinDepth_m) continue;
+    const Eigen::Vector3d uvu = rig_.project(p_other);
+    if (!inside(uvu.x(), uvu.y()) || (right_too && !inside(uvu.z(), uvu.y()))) continue;
+    const Eigen::Matrix2f A = predicted_shape(rig_, T_other_own, p_own, 0).cast<float>();
+    if (A.determinant() < limit && A.determinant() > 1 / limit) visible.push_back({&landmark, p_own, uvu, A});
+  }
+  const auto step = static_cast<size_t>(stride_of(visible.size(), wanted));
+  size_t kept = 0;
+  for (size_t i = 0; i < visible.size(); i += step) visible[kept++] = visible[i];
+  visible.resize(kept);
+}
+
 void LoopVerifier::find_landmarks(const StoredView& stored, const CurrentView& current, const Pose& T_from_to,
                                   Search& search) {
   search.pairs.clear();
   search.expected = 0;
   const Pose T_to_from = T_from_to.inverse();
-  const int stride = stride_of(stored.landmarks.size(), options_.landmarks);
-  for (size_t i = 0; i < stored.landmarks.size(); i += static_cast<size_t>(stride)) {
-    const Landmark& landmark = stored.landmarks[i];
-    const Eigen::Vector3d p_from = point_of(rig_, landmark), ray = p_from / p_from.z();
-    const Eigen::Vector3d p_to = T_to_from * p_from;
-    if (p_to.z() < kMinDepth_m) continue;
-    const Eigen::Vector3d uvu = rig_.project(p_to);
-    const auto inside = [this](double u, double v) {
-      return u > kBorder_px && v > kBorder_px && u < rig_.width_px - kBorder_px &&
-             v < rig_.height_px - kBorder_px;
-    };
-    if (!inside(uvu.x(), uvu.y()) || !inside(uvu.z(), uvu.y())) continue;
-    if (hidden(rig_, current.half_disparity, uvu)) continue;
-    const Eigen::Matrix2f A = predicted_shape(rig_, T_to_from, p_from, 0).cast<float>();
-    const Eigen::Matrix2f A_right = predicted_shape(rig_, T_to_from, p_from, rig_.baseline_m).cast<float>();
-    const auto limit = static_cast<float>(klt_.max_scale * klt_.max_scale);
-    if (!(A.determinant() < limit && A.determinant() > 1 / limit)) continue;
-    if (!patch_.take(stored_pyramid_, landmark.uv_px, klt_.levels)) continue;
+  choose_visible(stored.landmarks, T_to_from, true, options_.landmarks, visible_);
+  for (const Visible& seen : visible_) {
+    if (hidden(rig_, current.half_disparity, seen.uvu_px)) continue;
+    if (!patch_.take(stored_pyramid_, seen.landmark->uv_px, klt_.levels)) continue;
     ++search.expected;
     AffineState left, right;
-    if (!find(current.left, uvu.head<2>().cast<float>(), A, left)) continue;
-    const Eigen::Vector2d at_right(uvu.z(), uvu.y());
-    if (!find(current.right, at_right.cast<float>(), A_right, right)) continue;
+    if (!find(current.left, seen.uvu_px.head<2>().cast<float>(), seen.A, left)) continue;
+    const Eigen::Vector2f at_right = Eigen::Vector2d(seen.uvu_px.z(), seen.uvu_px.y()).cast<float>();
+    const Eigen::Matrix2f A_right =
+        predicted_shape(rig_, T_to_from, seen.p_own, rig_.baseline_m).cast<float>();
+    if (!find(current.right, at_right, A_right, right)) continue;
     if (!matcher_.plausible(left.uv_px, right.uv_px)) continue;
-    const double variance = static_cast<double>(landmark.sigma_m) * landmark.sigma_m;
-    search.pairs.push_back(
-        {p_from, variance * ray * ray.transpose(), optimal_measurement(left.uv_px, right.uv_px)});
+    const double sigma_m = seen.landmark->sigma_m;
+    const Eigen::Vector3d ray = seen.p_own / seen.p_own.z();
+    search.pairs.push_back({seen.p_own, sigma_m * sigma_m * ray * ray.transpose(),
+                            optimal_measurement(left.uv_px, right.uv_px)});
   }
 }
 
@@ -244,25 +289,13 @@ void LoopVerifier::find_landmarks(const StoredView& stored, const CurrentView& c
 /// puts them. A picture or piece of furniture that another place has too fails here: its surroundings differ.
 double LoopVerifier::reverse_ratio(const CurrentView& current, const Pose& T_from_to) {
   int expected = 0, found = 0;
-  const std::vector<Landmark>& landmarks = current.view.landmarks;
-  const int stride = stride_of(landmarks.size(), options_.landmarks / 2);
-  for (size_t i = 0; i < landmarks.size(); i += static_cast<size_t>(stride)) {
-    const Eigen::Vector3d p_to = point_of(rig_, landmarks[i]);
-    const Eigen::Vector3d p_from = T_from_to * p_to;
-    if (p_from.z() < kMinDepth_m) continue;
-    const Eigen::Vector3d uvu = rig_.project(p_from);
-    if (uvu.x() < kBorder_px || uvu.y() < kBorder_px || uvu.x() > rig_.width_px - kBorder_px ||
-        uvu.y() > rig_.height_px - kBorder_px) {
-      continue;
-    }
-    const Eigen::Matrix2f A = predicted_shape(rig_, T_from_to, p_to, 0).cast<float>();
-    const auto limit = static_cast<float>(klt_.max_scale * klt_.max_scale);
-    if (!(A.determinant() < limit && A.determinant() > 1 / limit)) continue;
-    if (!patch_.take(current.left, landmarks[i].uv_px, klt_.levels)) continue;
+  choose_visible(current.view.landmarks, T_from_to, false, options_.landmarks / 2, visible_);
+  for (const Visible& seen : visible_) {
+    if (!patch_.take(current.left, seen.landmark->uv_px, klt_.levels)) continue;
     ++expected;
     AffineState state;
-    if (!find(stored_pyramid_, uvu.head<2>().cast<float>(), A, state)) continue;
-    if ((state.uv_px.cast<double>() - uvu.head<2>()).norm() < kAgreement_px) ++found;
+    if (!find(stored_pyramid_, seen.uvu_px.head<2>().cast<float>(), seen.A, state)) continue;
+    if ((state.uv_px.cast<double>() - seen.uvu_px.head<2>()).norm() < kAgreement_px) ++found;
   }
   return expected > 0 ? static_cast<double>(found) / expected : 0;
 }
@@ -323,10 +356,7 @@ std::string LoopVerifier::refusal(const StoredView& stored, const Verification& 
 
 double contradiction_sigma(const PosePrediction& a, const PosePrediction& b, const LoopOptions& options) {
   const Vector6d error = se3_log(a.T_from_to.inverse() * b.T_from_to);
-  Matrix6d covariance = a.covariance + b.covariance;
-  const double margin_rad = options.margin_deg * kDegree;
-  covariance.topLeftCorner<3, 3>().diagonal().array() += options.margin_m * options.margin_m;
-  covariance.bottomRightCorner<3, 3>().diagonal().array() += margin_rad * margin_rad;
+  const Matrix6d covariance = with_margins(a.covariance + b.covariance, options);
   return std::sqrt(error.dot(covariance.ldlt().solve(error)));
 }
 

@@ -68,10 +68,22 @@ class LoopVerifier {
     int expected = 0;  ///< landmarks that the pose puts into both images, before everything seen there
   };
 
+  /// A landmark and where another camera should see it.
+  struct Visible {
+    const Landmark* landmark;
+    Eigen::Vector3d p_own;   ///< in the landmark's own left camera [m]
+    Eigen::Vector3d uvu_px;  ///< in the other pair
+    Eigen::Matrix2f A;       ///< d(uv in the other left image) / d(uv in its own)
+  };
+
+  void compare(const PosePrediction& prediction, bool was_away, const LoopOptions& needed,
+               Verification& found) const;
   std::optional<Pose> coarse_pose(const StoredView& stored, const CurrentView& current, uint64_t seed,
                                   std::string& message);
   Verification refine(const StoredView& stored, const CurrentView& current, const Pose& T_from_to,
                       uint64_t seed, const LoopOptions& needed);
+  void choose_visible(const std::vector<Landmark>& landmarks, const Pose& T_other_own, bool right_too,
+                      int wanted, std::vector<Visible>& visible) const;
   void find_landmarks(const StoredView& stored, const CurrentView& current, const Pose& T_from_to,
                       Search& search);
   double reverse_ratio(const CurrentView& current, const Pose& T_from_to);
@@ -91,6 +103,7 @@ class LoopVerifier {
   ImagePyramid stored_pyramid_;
   std::vector<DescriptorMatch> matches_;
   std::vector<PointPair> coarse_pairs_;
+  std::vector<Visible> visible_;
   Search search_;
 };
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <numbers>
 
@@ -136,6 +137,90 @@ TEST(LoopVerifier, FewLandmarksWillDoWhereAPlaceThatWasOutOfSightIsExpected) {
   LoopOptions strict;
   strict.predicted_ease = 1;
   EXPECT_FALSE(make_verifier(strict).verify(stored.view, current, near, 1).accepted);
+}
+
+TEST(LoopVerifier, LooksForLandmarksThatBothViewsShare) {
+  const PaintedRoom room(1);
+  const Pose T_from_to = moved(0, 0, 0, 0, 25, 0);  // half of the stored picture is out of sight
+  const CurrentView stored = current_view(room.key_frame(10, kHere));
+  const CurrentView current = current_view(room.key_frame(200, kHere * T_from_to));
+  const auto expected = [&](int landmarks) {
+    LoopOptions options;
+    options.landmarks = landmarks;
+    return make_verifier(options)
+        .verify(stored.view, current, prediction_of(T_from_to, 0.01, 0.1), 1)
+        .expected;
+  };
+  const int all = expected(5000);
+  ASSERT_LT(all, 0.6 * static_cast<double>(stored.view.landmarks.size()));
+  EXPECT_EQ(expected(static_cast<int>(1.5 * all)), all) << "those out of sight take no room";
+  EXPECT_LE(expected(all / 2), all / 2);
+  EXPECT_GT(expected(all / 2), all / 4);
+}
+
+TEST(LoopVerifier, AnExpectedPlaceMayBeMeasuredLessPrecisely) {
+  const PaintedRoom room(1);
+  const Pose T_from_to = moved(0.1, 0, 0.1, 0, 2, 0);
+  CurrentView stored = current_view(room.key_frame(10, kHere));
+  const CurrentView current = current_view(room.key_frame(200, kHere * T_from_to));
+  const PosePrediction near = prediction_of(T_from_to, 0.01, 0.1);
+  const Verification precise = make_verifier().verify(stored.view, current, near, 1);
+  ASSERT_TRUE(precise.accepted) << precise.message;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> of_rotation(
+      precise.link.covariance.bottomRightCorner<3, 3>());
+
+  LoopOptions options;  // twice as strict as the link is precise
+  options.max_sigma_deg = std::sqrt(of_rotation.eigenvalues().z()) / kDegree / 2;
+  options.predicted_ease = 0.4;
+  EXPECT_THAT(make_verifier(options).verify(stored.view, current, near, 1).message,
+              HasSubstr("uncertain by"));
+  stored.view.was_away = true;
+  const Verification found = make_verifier(options).verify(stored.view, current, near, 1);
+  EXPECT_TRUE(found.accepted) << found.message;
+}
+
+/// Landmarks in the middle of the image alone: whether the camera turned or moved aside is hard to tell.
+TEST(LoopVerifier, WhatFewLandmarksLeaveOpenIsTakenAsPredicted) {
+  const PaintedRoom room(1);
+  const Pose T_from_to = moved(0.1, 0, 0.1, 0, 2, 0);
+  CurrentView stored = current_view(room.key_frame(10, kHere));
+  const CurrentView current = current_view(room.key_frame(200, kHere * T_from_to));
+  std::erase_if(stored.view.landmarks, [](const Landmark& landmark) {
+    return std::abs(landmark.uv_px.x() - 320) > 100 || std::abs(landmark.uv_px.y() - 240) > 100;
+  });
+  stored.view.was_away = true;
+  LoopOptions options;
+  options.min_cells = 1;
+  options.predicted_ease = 0.1;
+  options.max_sigma_deg = options.max_sigma_ratio = 0.3;
+  options.margin_m = 0.1;
+  options.margin_deg = 1;
+  const auto error_with = [&](int min_inliers) {
+    LoopOptions with = options;
+    with.min_inliers = min_inliers;
+    const Verification found =
+        make_verifier(with).verify(stored.view, current, prediction_of(T_from_to, 0.001, 0.01), 1);
+    EXPECT_TRUE(found.accepted) << found.message;
+    return error_of(found, T_from_to);
+  };
+  const Vector6d measured = error_with(6);    // enough agree: it stands as it was measured
+  const Vector6d filled_in = error_with(60);  // too few, were the place not expected
+  EXPECT_LT(filled_in.norm(), 0.8 * measured.norm());
+  EXPECT_GT(filled_in.norm(), 0) << "the landmarks have a say";
+}
+
+TEST(LoopVerifier, WhatWasInSightAllTheTimeHasToTellMoreThanOdometry) {
+  const PaintedRoom room(1);
+  const Pose T_from_to = moved(0.1, 0, 0.1, 0, 2, 0);
+  CurrentView stored = current_view(room.key_frame(10, kHere));
+  const CurrentView current = current_view(room.key_frame(200, kHere * T_from_to));
+  LoopVerifier verifier = make_verifier();
+  const PosePrediction rough = prediction_of(T_from_to, 0.01, 0.1),
+                       exact = prediction_of(T_from_to, 1e-6, 1e-5);
+  EXPECT_TRUE(verifier.verify(stored.view, current, rough, 1).accepted);
+  EXPECT_EQ(verifier.verify(stored.view, current, exact, 1).message, "tells less than odometry does");
+  stored.view.was_away = true;
+  EXPECT_TRUE(verifier.verify(stored.view, current, exact, 1).accepted);
 }
 
 TEST(LoopVerifier, SeesNoLinkToWhatIsBehind) {
