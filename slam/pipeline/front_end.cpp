@@ -23,6 +23,7 @@ FrontEnd::FrontEnd(const StereoRig& rig, const SlamOptions& options, const Oracl
       dense_(options.disparity),
       matcher_(rig, options.stereo, options.klt),
       rows_(options.stereo),
+      lag_estimate_(options.stereo),
       tracker_(rig, options.tracking, options.klt, matcher_),
       rotation_(rig),
       registration_(rig, options.registration) {}
@@ -35,6 +36,9 @@ StereoFrame FrontEnd::rows_aligned(const StereoFrame& frame) {
 
 void FrontEnd::see(const StereoFrame& frame, StageClock& clock) {
   row_differences_px_.clear();
+  elapsed_s_ = static_cast<double>(frame.stamp_ns - seen_ns_) * 1e-9;
+  seen_ns_ = frame.stamp_ns;
+  lag_ = {};
   left_.build(frame.left, options_.klt.levels);
   right_.build(frame.right, options_.klt.levels);
   clock.lap(Stage::kPyramid);
@@ -56,7 +60,9 @@ const RegistrationResult& FrontEnd::follow(const StereoFrame& frame, const Pose&
     return registered_;
   }
   const int expected = expected_in_view(T_kf_predicted);
-  tracker_.track(left_, right_, T_kf_previous, T_kf_predicted, frame.T_previous_left.has_value());
+  lag_ = lag_after(T_kf_previous.inverse() * T_kf_predicted);
+  tracker_.track(left_, right_, T_kf_previous, T_kf_predicted, frame.T_previous_left.has_value(), lag_);
+  check_lag(T_kf_previous, T_kf_predicted);
   align(T_kf_predicted);
 
   // The plan was far off, or there is none: let the whole image say how the camera turned.
@@ -64,18 +70,50 @@ const RegistrationResult& FrontEnd::follow(const StereoFrame& frame, const Pose&
     Pose T_left = T_kf_previous.inverse() * T_kf_predicted;
     T_left.linear() = rotation_.align(left_, T_left.linear());
     T_kf_predicted = T_kf_previous * T_left;
-    tracker_.track_again(left_, right_, T_kf_previous, T_kf_predicted);
+    lag_ = lag_after(T_left);
+    tracker_.track_again(left_, right_, T_kf_previous, T_kf_predicted, lag_);
     align(T_kf_predicted);
   }
   // Features that were looked for in the wrong place are looked for again where the motion found puts them.
   if (registered_.usable && few(0.7)) {
-    tracker_.track_again(left_, right_, T_kf_previous, registered_.T_from_to);
+    tracker_.track_again(left_, right_, T_kf_previous, registered_.T_from_to, lag_);
     align(registered_.T_from_to);
   }
   rotation_.remember(left_);
   for (const Feature& feature : tracker_.features()) note_row(feature);
+  elapsed_before_s_ = registered_.usable ? elapsed_s_ : 0;
+  if (elapsed_before_s_ > 0)
+    velocity_before_ = se3_log(T_kf_previous.inverse() * registered_.T_from_to) / elapsed_s_;
   distrust_few(expected);
   return registered_;
+}
+
+/// The lag as known, at the speed of this frame.
+RightLag FrontEnd::lag_after(const Pose& T_previous_left) const {
+  if (!(elapsed_s_ > 0)) return {};
+  Vector6d velocity = se3_log(T_previous_left) / elapsed_s_;
+  const double late_s = lag_estimate_.late_s();
+  // Means over the last two times between frames, carried on to the time between the exposures.
+  if (elapsed_before_s_ > 0)
+    velocity += (velocity - velocity_before_) * ((elapsed_s_ + late_s) / (elapsed_s_ + elapsed_before_s_));
+  return {velocity, late_s};
+}
+
+/// Learns from the rows of what was tracked how late the right image is, and takes it off.
+void FrontEnd::check_lag(const Pose& T_kf_previous, const Pose& T_kf_left) {
+  const Pose T_left_kf = T_kf_left.inverse();
+  lag_sights_.clear();
+  for (const Feature& feature : tracker_.features()) {
+    if (!feature.found_right) continue;
+    const Eigen::Vector3d p_left = T_left_kf * feature.p_kf;
+    const double off_px = feature.right.uv_px.y() - feature.left.uv_px.y();
+    lag_sights_.push_back({p_left.head<2>() / p_left.z(), off_px, lag_.row_flow_px_per_s(rig_, p_left)});
+  }
+  const double before_s = lag_estimate_.late_s();
+  lag_estimate_.observe(lag_sights_);
+  if (lag_estimate_.late_s() == before_s) return;
+  lag_ = lag_after(T_kf_previous.inverse() * T_kf_left);
+  tracker_.take_off(lag_, T_kf_left);
 }
 
 /// Whether the left image has no more grey values to tell at a place: whatever is there cannot be seen.
@@ -141,6 +179,7 @@ void FrontEnd::look_up_tracks(int64_t frame) {
 
 void FrontEnd::start(const StereoFrame& frame, StageClock& clock) {
   tracker_.clear();
+  elapsed_before_s_ = 0;
   add_features(frame, clock);
   rotation_.remember(left_);
 }
@@ -220,6 +259,8 @@ bool FrontEnd::match(int64_t frame, Feature& feature) {
   if (!right) return false;
   feature.right = *right;
   feature.found_right = true;
+  feature.late_px = lag_.shift_px(rig_, feature.left.uv_px, feature.right.uv_px);
+  feature.right.uv_px -= feature.late_px;
   note_row(feature);
   return matcher_.plausible(feature.left.uv_px, feature.right.uv_px);
 }

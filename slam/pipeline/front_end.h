@@ -9,7 +9,9 @@
 #include "slam/pipeline/stage_clock.h"
 #include "slam/registration/registration.h"
 #include "slam/stereo/disparity.h"
+#include "slam/stereo/lag_estimate.h"
 #include "slam/stereo/matcher.h"
+#include "slam/stereo/right_lag.h"
 #include "slam/stereo/row_alignment.h"
 #include "slam/tracking/rotation_alignment.h"
 #include "slam/tracking/tracker.h"
@@ -48,7 +50,8 @@ class FrontEnd {
   /// Learns from all matches of the current frame whether its rows are right.
   /// @return what most of them are off by alike [px]; none when there is nothing of the kind
   std::optional<double> check_rows() { return rows_.observe(row_differences_px_); }
-  double row_offset_px() const { return rows_.offset_px(); }  ///< see RowAlignment
+  double row_offset_px() const { return rows_.offset_px(); }      ///< see RowAlignment
+  double right_late_s() const { return lag_estimate_.late_s(); }  ///< see LagEstimate
 
   /// Features of the last key frame, with their points there.
   std::vector<Feature>& features() { return tracker_.features(); }
@@ -79,6 +82,8 @@ class FrontEnd {
   void add_features(const StereoFrame& frame, StageClock& clock);
   bool match(int64_t frame, Feature& feature);
   void note_row(const Feature& feature);
+  RightLag lag_after(const Pose& T_previous_left) const;
+  void check_lag(const Pose& T_kf_previous, const Pose& T_kf_left);
   void measure_key_frame();
 
   StereoRig rig_;
@@ -88,6 +93,7 @@ class FrontEnd {
   DenseDisparity dense_;
   StereoMatcher matcher_;
   RowAlignment rows_;
+  LagEstimate lag_estimate_;
   Tracker tracker_;
   RotationAlignment rotation_;
   Registration registration_;
@@ -97,9 +103,15 @@ class FrontEnd {
   std::vector<size_t> pair_feature_;  ///< index into features(), per pair
   RegistrationResult registered_;
   std::vector<float> row_differences_px_;  ///< of the current frame's matches
+  std::vector<LagSight> lag_sights_;
   std::vector<Eigen::Vector2f> occupied_;
   std::vector<double> depths_m_;
 
+  int64_t seen_ns_ = 0;                          ///< time of the current frame
+  double elapsed_s_ = 0;                         ///< since the frame seen before
+  Vector6d velocity_before_ = Vector6d::Zero();  ///< mean until the frame before [m/s, rad/s]
+  double elapsed_before_s_ = 0;                  ///< that it is the mean of; 0: not known
+  RightLag lag_;                                 ///< of the current frame
   int64_t kf_frame_ = 0;
   size_t kf_features_ = 0;
   double kf_median_depth_m_ = 0;

@@ -171,6 +171,7 @@ void Pipeline::Impl::process(const StereoFrame& delivered, FrameResult& result) 
   result.index = frame.index;
   result.stamp_ns = frame.stamp_ns;
   result.row_offset_px = front.row_offset_px();
+  result.right_late_s = front.right_late_s();
   StageClock clock(result);
   take_results(frame.index, result);
   clock.restart();
@@ -199,6 +200,7 @@ void Pipeline::Impl::process(const StereoFrame& delivered, FrameResult& result) 
     }
   }
   check_rows(result);
+  result.right_late_s = front.right_late_s();
   T_kf_seen = T_kf_left;
   record(frame, result);
 }

@@ -16,6 +16,7 @@ SlamOptions paper() {
   options.registration.sigma_px = 0.2;
   options.stereo.epipolar_gate_px = 1;
   options.stereo.max_row_offset_px = 0;
+  options.stereo.max_right_late_s = 0;
   options.mapping.fuse_layers = false;
   options.mapping.ends_deny_empty = false;
   options.mapping.layer_heights_m = {0.05, 0.5, 1.0, 1.5, 2.0};

@@ -15,6 +15,7 @@ struct StereoOptions {
   double min_disparity_px = 1.0;       ///< beyond the disparity at infinity; smaller ones carry no depth
   double max_prediction_error_px = 6;  ///< farther from the dense disparity is another surface
   double max_row_offset_px = 5;        ///< largest slip of the right image's rows that is taken back; 0: none
+  double max_right_late_s = 0.1;       ///< largest lag of the right image that is taken back; 0: none
 
   template <class Archive>
   void visit(Archive& a) {
@@ -22,6 +23,7 @@ struct StereoOptions {
     a("min_disparity_px", min_disparity_px, {.min = 0, .max = 100});
     a("max_prediction_error_px", max_prediction_error_px, {.min = 0.5, .max = 100});
     a("max_row_offset_px", max_row_offset_px, {.min = 0, .max = 100});
+    a("max_right_late_s", max_right_late_s, {.min = 0, .max = 1});
   }
 };
 

@@ -22,7 +22,8 @@ struct Feature {
       Eigen::Vector2f::Zero();  ///< of the surface there, see inverse_depth_slope()
 
   AffineState left;
-  AffineState right;
+  AffineState right;                                  ///< as if taken together with the left
+  Eigen::Vector2f late_px = Eigen::Vector2f::Zero();  ///< what a lag of the right image moved it by there
   Eigen::Matrix2f shape_before = Eigen::Matrix2f::Identity();  ///< shape in the previous left image
   bool in_left = false;                                        ///< found in the current left image
   bool found_right = false;                                    ///< found in the current right image

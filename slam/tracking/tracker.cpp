@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "slam/stereo/right_lag.h"
 #include "slam/tracking/perspective.h"
 
 namespace groundloop::slam {
@@ -30,7 +31,7 @@ Tracker::Tracker(const StereoRig& rig, const TrackingOptions& options, const Klt
     : rig_(rig), options_(options), klt_(klt), matcher_(matcher) {}
 
 void Tracker::track(const ImagePyramid& left, const ImagePyramid& right, const Pose& T_kf_previous,
-                    const Pose& T_kf_left, bool planned) {
+                    const Pose& T_kf_left, bool planned, const RightLag& lag) {
   const int start_level = planned ? options_.planned_start_level : options_.start_level;
   const Pose T_previous_kf = T_kf_previous.inverse(), T_left_kf = T_kf_left.inverse();
   for (Feature& feature : features_) {
@@ -47,7 +48,8 @@ void Tracker::track(const ImagePyramid& left, const ImagePyramid& right, const P
     AffineState start_left = feature.left, start_right = feature.right;
     start_left.uv_px = left_of(now);
     if (feature.in_left) start_left.uv_px += feature.left.uv_px - left_of(before);
-    start_right.uv_px = right_of(now);
+    feature.late_px = lag.shift_px(rig_, p_left);
+    start_right.uv_px = right_of(now) + feature.late_px;
     if (feature.in_right) start_right.uv_px += feature.right.uv_px - right_of(before);
     const Eigen::Matrix2f change = shape_change(T_left_kf * T_kf_previous, p_previous.z() / p_left.z());
     start_left.A = change * feature.left.A;
@@ -58,7 +60,7 @@ void Tracker::track(const ImagePyramid& left, const ImagePyramid& right, const P
 }
 
 void Tracker::track_again(const ImagePyramid& left, const ImagePyramid& right, const Pose& T_kf_previous,
-                          const Pose& T_kf_left) {
+                          const Pose& T_kf_left, const RightLag& lag) {
   const Pose T_previous_kf = T_kf_previous.inverse(), T_left_kf = T_kf_left.inverse();
   for (Feature& feature : features_) {
     if (feature.in_left && feature.in_right && feature.is_inlier) continue;
@@ -71,7 +73,8 @@ void Tracker::track_again(const ImagePyramid& left, const ImagePyramid& right, c
     start.uv_px = left_of(now);
     start.c_per_px = perspective_of(feature, T_left_kf, p_left);
     AffineState start_right = start;
-    start_right.uv_px = right_of(now);
+    feature.late_px = lag.shift_px(rig_, p_left);
+    start_right.uv_px = right_of(now) + feature.late_px;
     track_one(left, right, start, start_right, options_.start_level, feature);
   }
 }
@@ -89,7 +92,19 @@ void Tracker::track_one(const ImagePyramid& left, const ImagePyramid& right, con
   feature.in_left = find(patch, left, start_left, start_level, feature.left);
   if (!feature.in_left) return;
   feature.found_right = find(patch, right, start_right, start_level, feature.right);
+  feature.right.uv_px -= feature.late_px;
   feature.in_right = feature.found_right && matcher_.plausible(feature.left.uv_px, feature.right.uv_px);
+}
+
+void Tracker::take_off(const RightLag& lag, const Pose& T_kf_left) {
+  const Pose T_left_kf = T_kf_left.inverse();
+  for (Feature& feature : features_) {
+    if (!feature.found_right) continue;
+    feature.right.uv_px += feature.late_px;
+    feature.late_px = lag.shift_px(rig_, T_left_kf * feature.p_kf);
+    feature.right.uv_px -= feature.late_px;
+    feature.in_right = matcher_.plausible(feature.left.uv_px, feature.right.uv_px);
+  }
 }
 
 bool Tracker::find(const PatchTemplate& patch, const ImagePyramid& image, const AffineState& start,

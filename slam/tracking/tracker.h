@@ -13,6 +13,8 @@
 
 namespace groundloop::slam {
 
+class RightLag;
+
 /// Options of tracking. YAML: slam.tracking
 struct TrackingOptions {
   int max_features = 460;       ///< aimed at after every key frame in 640 x 480 px, more in a larger image
@@ -46,12 +48,16 @@ class Tracker {
   /// @param T_kf_previous  pose of the previous left camera in the key frame's, as estimated
   /// @param T_kf_left      pose of the new one, as predicted
   /// @param planned        by the motion that the robot told, not by going on as before
+  /// @param lag            of the right image, as known before
   void track(const ImagePyramid& left, const ImagePyramid& right, const Pose& T_kf_previous,
-             const Pose& T_kf_left, bool planned);
+             const Pose& T_kf_left, bool planned, const RightLag& lag);
 
   /// Tries again the features that were not found, or did not agree, from their points alone.
   void track_again(const ImagePyramid& left, const ImagePyramid& right, const Pose& T_kf_previous,
-                   const Pose& T_kf_left);
+                   const Pose& T_kf_left, const RightLag& lag);
+
+  /// Takes another lag for the true one, off what was found with the one before.
+  void take_off(const RightLag& lag, const Pose& T_kf_left);
 
   /// Adds a feature seen at uv_px in `left`, which becomes its first view; none when the window is no good.
   Feature* add(const ImagePyramid& left, const Eigen::Vector2f& uv_px);

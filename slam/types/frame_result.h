@@ -65,6 +65,7 @@ struct FrameResult {
   int features_tracked = 0;
   int inliers = 0;
   double row_offset_px = 0;  ///< by which the right image was found to have slipped down, and moved back
+  double right_late_s = 0;   ///< by which the right image was found to be late, and taken for so
   double residual_px = 0;    ///< rms reprojection error of the inliers
 
   std::vector<FeatureObservation> features;

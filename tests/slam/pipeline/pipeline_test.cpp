@@ -253,6 +253,27 @@ TEST_F(PipelineTest, ASlipOfTheRightImageIsFoundAndTakenBack) {
   EXPECT_EQ(lost_by_paper, 8) << "which is left as it was published";
 }
 
+TEST_F(PipelineTest, ALateRightImageIsFoundAndWhatHasFlowedByThenTakenOff) {
+  constexpr double kLate_steps = 0.3, kLate_s = 0.04;
+  Pipeline core(room_.rig(), {}), paper(room_.rig(), preset("paper"));
+  double worst_m = 0, worst_of_paper_m = 0;
+  for (int64_t i = 0; i < 20; ++i) {
+    const auto step = static_cast<double>(i);
+    const bool late = i >= 4 && i < 14;
+    StereoFrame frame = room_.frame(i);
+    if (late) frame.right = room_.frame(i, step + kLate_steps, step).right;
+    const FrameResult result = core.process(frame);
+    EXPECT_EQ(result.status, i == 0 ? kStarted : kTracking) << i << ": " << result.message;
+    EXPECT_NEAR(result.right_late_s, late ? kLate_s : 0, late ? 0.006 : 0) << i;
+    worst_m = std::max(worst_m, distance_m(result.T_map_left, room_.T_map_left(step)));
+    const FrameResult published = paper.process(frame);
+    EXPECT_EQ(published.right_late_s, 0);
+    worst_of_paper_m = std::max(worst_of_paper_m, distance_m(published.T_map_left, room_.T_map_left(step)));
+  }
+  EXPECT_LT(worst_m, 0.01);
+  EXPECT_GT(worst_of_paper_m, 3 * worst_m) << "which is left as it was published";
+}
+
 TEST_F(PipelineTest, WhatIsBlownOutIsNotMissed) {
   // A flash: most features are in white, where nothing can be seen. Those that are left are few of all.
   constexpr double kFlash = 2;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "slam/stereo/right_lag.h"
 #include "tests/slam/features/texture.h"
 #include "tests/slam/types/centred_rig.h"
 
@@ -99,7 +100,7 @@ class TrackerTest : public testing::TestWithParam<bool> {
   }
 
   void track(const ImagePyramid& right, const Pose& T_kf_previous, const Pose& T_kf_left) {
-    tracker_.track(view_.left, right, T_kf_previous, T_kf_left, GetParam());
+    tracker_.track(view_.left, right, T_kf_previous, T_kf_left, GetParam(), RightLag());
   }
 
   const StereoRig rig_ = rig_of_test();
@@ -180,7 +181,7 @@ TEST_P(TrackerTest, TrackAgainFindsWhatAWrongPlanMissed) {
   track(view_.right, Pose::Identity(), motion(0, 0, 0, 0, -14, 20));
   for (Feature& f : tracker_.features()) f.is_inlier = false;
   const Outcome before = outcome(T_kf_left);
-  tracker_.track_again(view_.left, view_.right, Pose::Identity(), T_kf_left);
+  tracker_.track_again(view_.left, view_.right, Pose::Identity(), T_kf_left, RightLag());
   const Outcome after = outcome(T_kf_left);
   EXPECT_LT(before.found, after.visible / 2);
   EXPECT_EQ(after.found, after.visible);
@@ -195,7 +196,7 @@ TEST_P(TrackerTest, TrackAgainLeavesGoodFeaturesAlone) {
     f.is_inlier = true;
     before.push_back(f.left.uv_px);
   }
-  tracker_.track_again(view_.left, view_.right, Pose::Identity(), motion(0.1, 0, 0, 0, 3, 0));
+  tracker_.track_again(view_.left, view_.right, Pose::Identity(), motion(0.1, 0, 0, 0, 3, 0), RightLag());
   for (size_t i = 0; i < before.size(); ++i) EXPECT_EQ(tracker_.features()[i].left.uv_px, before[i]);
 }
 
