@@ -85,11 +85,15 @@ Metrics tracking_metrics(const std::vector<slam::FrameResult>& frames) {
     return static_cast<double>(std::count_if(frames.begin(), frames.end(),
                                              [&](const slam::FrameResult& f) { return f.status == status; }));
   };
+  const auto latest = std::max_element(frames.begin(), frames.end(), [](const auto& a, const auto& b) {
+    return std::abs(a.right_late_s) < std::abs(b.right_late_s);
+  });
   const double first = frames.front().status == slam::TrackingStatus::kStarted ? 1 : 0;
   return {{"trajectory.lost_frames", count(slam::TrackingStatus::kLost)},
           {"trajectory.completeness",
            (count(slam::TrackingStatus::kTracking) + first) / static_cast<double>(frames.size())},
-          {"tracking.row_offset_px", frames.back().row_offset_px}};
+          {"tracking.row_offset_px", frames.back().row_offset_px},
+          {"tracking.right_late_s", latest->right_late_s}};
 }
 
 }  // namespace groundloop::bench

@@ -40,8 +40,8 @@ Metrics trajectory_metrics(const PosePairs& pairs,
 
 /// What the core says of its tracking: trajectory.lost_frames (frames with status lost),
 /// trajectory.completeness (the part of the frames whose pose came from vision, or that started the first
-/// segment, in [0, 1]) and tracking.row_offset_px (by which the right image was moved back at the end). No
-/// frames: empty.
+/// segment, in [0, 1]), tracking.row_offset_px (by which the right image was moved back at the end) and
+/// tracking.right_late_s (by which it was taken for late, where that was most). No frames: empty.
 Metrics tracking_metrics(const std::vector<slam::FrameResult>& frames);
 
 }  // namespace groundloop::bench

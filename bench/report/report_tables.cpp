@@ -71,6 +71,7 @@ const std::map<std::string, std::string>& meanings() {
       {"tracking.relocalised_s", "longest time until the pose was right again"},
       {"tracking.silent_jumps", "steps that the camera did not make, unannounced"},
       {"tracking.row_offset_px", "slip of the right image's rows, found and taken back"},
+      {"tracking.right_late_s", "longest delay of the right image, found and taken off"},
       {"map.f1", "harmonic mean of precision and recall of occupied cells"},
       {"map.iou", "intersection over union of occupied cells"},
       {"map.mcc", "Matthews correlation of occupied and free"},

@@ -66,7 +66,7 @@ void write_metrics_json(const std::string& file, const Metrics& metrics) {
 void write_frames_csv(const std::string& file, const std::vector<slam::FrameResult>& frames,
                       const std::vector<FrameNotes>& notes) {
   slam::write_file_atomically(file, [&](std::ostream& out) {
-    out << "index,stamp_ns,status,segment,is_key_frame,features_tracked,inliers,residual_px";
+    out << "index,stamp_ns,status,segment,is_key_frame,features_tracked,inliers,residual_px,right_late_s";
     for (size_t s = 0; s < slam::kStageCount; ++s) {
       out << "," << slam::name_of(static_cast<slam::Stage>(s)) << "_ms";
     }
@@ -74,8 +74,8 @@ void write_frames_csv(const std::string& file, const std::vector<slam::FrameResu
            "gain_db,faults,state_hash\n";
     for (size_t i = 0; i < frames.size(); ++i) {
       const slam::FrameResult& f = frames[i];
-      fmt::print(out, "{},{},{},{},{:d},{},{},{}", f.index, f.stamp_ns, slam::name_of(f.status), f.segment,
-                 f.is_key_frame, f.features_tracked, f.inliers, f.residual_px);
+      fmt::print(out, "{},{},{},{},{:d},{},{},{},{}", f.index, f.stamp_ns, slam::name_of(f.status), f.segment,
+                 f.is_key_frame, f.features_tracked, f.inliers, f.residual_px, f.right_late_s);
       for (const double ms : f.stage_ms) fmt::print(out, ",{:.3f}", ms);
       const FrameNotes& n = notes[i];
       fmt::print(out, ",{:.3f},{},{:.1f},{},{},{},{},{},{},{:016x}\n", f.total_ms,

@@ -23,6 +23,7 @@ inline constexpr auto kMetricNames = std::to_array<const char*>({
     "tracking.relocalised_s",
     "tracking.silent_jumps",
     "tracking.row_offset_px",
+    "tracking.right_late_s",
     "map.f1",
     "map.iou",
     "map.mcc",

@@ -48,10 +48,9 @@ TEST(RunFolder, IsCompleteAndAgreesWithItself) {
   for (const char* trajectory : {"/truth.tum", "/estimate.tum", "/odometry.tum"}) {
     EXPECT_THAT(lines_of(folder + trajectory), SizeIs(12)) << trajectory;
   }
-  EXPECT_THAT(
-      lines_of(folder + "/frames.csv")[0],
-      StartsWith(
-          "index,stamp_ns,status,segment,is_key_frame,features_tracked,inliers,residual_px,pyramid_ms,"));
+  EXPECT_THAT(lines_of(folder + "/frames.csv")[0],
+              StartsWith("index,stamp_ns,status,segment,is_key_frame,features_tracked,inliers,residual_px,"
+                         "right_late_s,pyramid_ms,"));
 
   // metrics and verdict
   const json metrics = json::parse(text_of(folder + "/metrics.json"));
@@ -75,6 +74,7 @@ TEST(RunFolder, IsCompleteAndAgreesWithItself) {
                            "tracking.interruptions",
                            "tracking.silent_jumps",
                            "tracking.row_offset_px",
+                           "tracking.right_late_s",
                            "timing.render_ms",
                            "timing.slam_ms_median",
                            "timing.slam_ms_p99",

@@ -166,6 +166,7 @@ TEST(TrackingMetrics, OfARunWithoutLossesAreComplete) {
   EXPECT_EQ(metrics.at("trajectory.lost_frames"), 0);
   EXPECT_EQ(metrics.at("trajectory.completeness"), 1);
   EXPECT_EQ(metrics.at("tracking.row_offset_px"), 0);
+  EXPECT_EQ(metrics.at("tracking.right_late_s"), 0);
   EXPECT_TRUE(tracking_metrics({}).empty());
 }
 
@@ -173,6 +174,14 @@ TEST(TrackingMetrics, TellTheRowOffsetOfTheEnd) {
   std::vector<slam::FrameResult> frames = frames_of({TrackingStatus::kStarted, TrackingStatus::kTracking});
   frames.back().row_offset_px = 1.2;
   EXPECT_EQ(tracking_metrics(frames).at("tracking.row_offset_px"), 1.2);
+}
+
+TEST(TrackingMetrics, TellTheLongestDelayOfTheRun) {
+  std::vector<slam::FrameResult> frames =
+      frames_of({TrackingStatus::kStarted, TrackingStatus::kTracking, TrackingStatus::kTracking});
+  frames[0].right_late_s = 0.01;
+  frames[1].right_late_s = -0.02;
+  EXPECT_EQ(tracking_metrics(frames).at("tracking.right_late_s"), -0.02);
 }
 
 }  // namespace
