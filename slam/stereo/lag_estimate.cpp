@@ -57,7 +57,7 @@ void LagEstimate::observe(const std::vector<LagSight>& sights) {
   const std::optional<OfPair> pair = fit(sights);
   if (!pair || !(pair->noise_s2 + pair->calibration_s2 < squared(kTold_s))) return;
   take(*pair);
-  const double sigma_s = std::sqrt(noise_s2_ + pair->calibration_s2);
+  const double sigma_s = std::sqrt(noise_s2_ + calibration_s2_);
   const double least_s = std::max(kLeast_s, kSigmas * sigma_s) * (claimed_ ? 0.5 : 1);
   claimed_ = std::abs(late_s_) > least_s && std::abs(late_s_) <= options_.max_right_late_s;
 }
@@ -70,6 +70,7 @@ void LagEstimate::take(const OfPair& pair) {
   const double gain = other ? 1 : noise_s2_ / (noise_s2_ + pair.noise_s2);
   late_s_ += gain * off_s;
   noise_s2_ = gain * pair.noise_s2;
+  calibration_s2_ += gain * (pair.calibration_s2 - calibration_s2_);
 }
 
 }  // namespace groundloop::slam

@@ -44,7 +44,8 @@ class LagEstimate {
 
   StereoOptions options_;
   double late_s_ = 0;
-  double noise_s2_ = 1;  ///< variance of late_s_ from noise
+  double noise_s2_ = 1;  ///< variance of late_s_, as OfPair has it
+  double calibration_s2_ = 0;
   bool claimed_ = false;
 };
 
