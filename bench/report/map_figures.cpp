@@ -76,12 +76,18 @@ void paint_cells(Canvas& canvas, const PlanView& view, const GridGeometry& geome
                  const PaintAt& paint_at) {
   const cv::Rect2d panel = view.panel();
   constexpr int kScale = Canvas::kScale;
+  const int left = cvCeil(panel.x * kScale);
+  std::vector<int> col_of;  // of each pixel across: the same in all rows
+  for (int u = left; u < panel.br().x * kScale; ++u) {
+    col_of.push_back(geometry.col_of(view.metres((u + 0.5) / kScale, 0).x()));
+  }
   for (int v = cvCeil(panel.y * kScale); v < panel.br().y * kScale; ++v) {
-    for (int u = cvCeil(panel.x * kScale); u < panel.br().x * kScale; ++u) {
-      const Eigen::Vector2d p = view.metres((u + 0.5) / kScale, (v + 0.5) / kScale);
-      const int col = geometry.col_of(p.x()), row = geometry.row_of(p.y());
+    const int row = geometry.row_of(view.metres(0, (v + 0.5) / kScale).y());
+    auto* pixel = canvas.pixels().ptr<cv::Vec3b>(v, left);
+    for (const int col : col_of) {
       const CellPaint paint = geometry.contains(col, row) ? paint_at(col, row) : CellPaint{kUnknownColour};
-      if (paint.above_grid == above_grid) canvas.pixels().at<cv::Vec3b>(v, u) = paint.colour.bgr();
+      if (paint.above_grid == above_grid) *pixel = paint.colour.bgr();
+      ++pixel;
     }
   }
 }

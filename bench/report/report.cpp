@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <future>
 #include <opencv2/imgcodecs.hpp>
 #include <ostream>
 
@@ -36,6 +37,10 @@ std::string note(const std::string& text) { return "<p class=\"note\">" + text +
 
 std::string figure(const std::string& content, const std::string& title, const std::string& caption) {
   return "<figure>" + content + "<figcaption><b>" + title + "</b> " + caption + "</figcaption></figure>";
+}
+
+std::string section(const std::string& title, const std::string& content) {
+  return "<section><h2>" + title + "</h2>" + content + "</section>\n";
 }
 
 std::string picture(const cv::Mat& bgr, size_t max_bytes, const std::string& alt) {
@@ -133,10 +138,13 @@ std::string frame_section(const RunFolder& run) {
                                               : html;
 }
 
-std::string top_view_section(const RunFolder& run, const TopView& view) {
-  if (view.estimate.empty() && view.cloud.empty())
-    return note("The run left no trajectory and no point cloud.");
-  const cv::Mat image = draw_top_view(view);
+/// Empty when there is nothing to show.
+cv::Mat top_view_of(const TopView& view) {
+  return view.estimate.empty() && view.cloud.empty() ? cv::Mat() : draw_top_view(view);
+}
+
+std::string top_view_section(const RunFolder& run, const TopView& view, const cv::Mat& image) {
+  if (image.empty()) return note("The run left no trajectory and no point cloud.");
   save_figure(run, "top_view.png", image);
   const std::string truth = view.truth.empty() ? "No true trajectory is known."
                                                : "Black: the true trajectory, red: the estimated one.";
@@ -150,8 +158,15 @@ std::string top_view_section(const RunFolder& run, const TopView& view) {
                     "uncertain ones are faint. (Paper: Fig. 3 simulated, Fig. 8 real.)");
 }
 
-std::string map_section(const RunFolder& run, const PlacedRun& place) {
-  if (!run.map) return note("The run left no occupancy map.");
+/// The run's map as it is shown.
+struct MapPictures {
+  cv::Mat pair;        ///< beside the exact one, when that is known; empty without a map
+  cv::Mat difference;  ///< from the exact one; empty when that is not known, or not what was visible of it
+  bool exact_known = false;
+};
+
+MapPictures map_pictures(const RunFolder& run, const PlacedRun& place) {
+  if (!run.map) return {};
   const bool exact_known = run.truth_map && run.header.kind == "run" && run.T_world_map;
   const std::vector<uint8_t> visible = [&] {
     std::vector<uint8_t> cells;
@@ -171,19 +186,28 @@ std::string map_section(const RunFolder& run, const PlacedRun& place) {
     around.rows += 2 * margin;
     shown = resampled_map(*run.map, place.T_frame_map, around);
   }
-  const cv::Mat pair = draw_map_pair(shown, exact_known ? run.truth_map : std::nullopt, visible);
-  save_figure(run, "map.png", pair);
-  const std::string caption = exact_known
+  MapPictures pictures;
+  pictures.exact_known = exact_known;
+  pictures.pair = draw_map_pair(shown, exact_known ? run.truth_map : std::nullopt, visible);
+  if (!exact_known || visible.empty()) return pictures;
+  pictures.difference = draw_map_difference(
+      resampled_map(*run.map, place.T_frame_map, run.truth_map->geometry), *run.truth_map, visible);
+  return pictures;
+}
+
+std::string map_section(const RunFolder& run, const MapPictures& pictures) {
+  if (pictures.pair.empty()) return note("The run left no occupancy map.");
+  save_figure(run, "map.png", pictures.pair);
+  const std::string caption = pictures.exact_known
                                   ? "Left: what SLAM made; right: exact, from the geometry of the scene."
                                   : "No exact map is known for this run.";
-  std::string html = figure(picture(pair, kPlanBytes, "Estimated occupancy map and the exact one"),
+  std::string html = figure(picture(pictures.pair, kPlanBytes, "Estimated occupancy map and the exact one"),
                             "Final occupancy map.", caption + " (Paper: Fig. 4 simulated, Fig. 9 real.)");
-  if (!exact_known || visible.empty()) return html;
-  const cv::Mat difference = draw_map_difference(
-      resampled_map(*run.map, place.T_frame_map, run.truth_map->geometry), *run.truth_map, visible);
-  save_figure(run, "map_difference.png", difference);
-  return html + figure(picture(difference, kPlanBytes, "Differences of the estimated from the exact map"),
-                       "Where the map is wrong.", "Cell by cell, where the true trajectory could see.");
+  if (pictures.difference.empty()) return html;
+  save_figure(run, "map_difference.png", pictures.difference);
+  return html +
+         figure(picture(pictures.difference, kPlanBytes, "Differences of the estimated from the exact map"),
+                "Where the map is wrong.", "Cell by cell, where the true trajectory could see.");
 }
 
 std::string scene_section(const RunFolder& run) {
@@ -193,12 +217,10 @@ std::string scene_section(const RunFolder& run) {
                 "Model of the scene and planned trajectory.", "(Paper: Fig. 5.)");
 }
 
-/// The five figures of the paper's simulated run, after those of this run are drawn; nothing when one is
-/// missing.
-std::string plate_section(const RunFolder& run) {
+/// The five figures of the paper's simulated run; nothing when one is missing.
+std::string plate_section(const RunFolder& run, const cv::Mat& top_view, const cv::Mat& map) {
   const cv::Mat left = left_by_run(run, "left.png"), disparity = left_by_run(run, "disparity.png");
-  const cv::Mat top_view = left_by_run(run, "top_view.png"), scene = left_by_run(run, "preview.png");
-  const cv::Mat map = left_by_run(run, "map.png");
+  const cv::Mat scene = left_by_run(run, "preview.png");
   for (const cv::Mat& picture : {left, disparity, top_view, scene, map}) {
     if (picture.empty()) return "";
   }
@@ -207,11 +229,11 @@ std::string plate_section(const RunFolder& run) {
                                      {"Fig. 5: model of the scene, planned trajectory", scene}},
                                     {{"Fig. 4: final occupancy map", map}}});
   save_figure(run, "paper_figures.png", plate);
-  return "<section><h2>The paper's five figures</h2>" +
-         figure(picture(plate, kPlateBytes,
-                        "Left image, disparity, top view, scene with plan, and map on one plate"),
-                "Side by side.", "Numbered as in the paper, section 3.1; each again below, in full size.") +
-         "</section>\n";
+  return section(
+      "The paper's five figures",
+      figure(picture(plate, kPlateBytes,
+                     "Left image, disparity, top view, scene with plan, and map on one plate"),
+             "Side by side.", "Numbered as in the paper, section 3.1; each again below, in full size."));
 }
 
 // ---- plots over time
@@ -302,6 +324,23 @@ std::string memory_plot(const RunFolder& run) {
                 "Memory.", "Of the whole process, simulator and renderer included.");
 }
 
+/// All sections with pictures. Most of a report's time goes into drawing and packing them, so they are made
+/// side by side.
+std::string picture_sections(const RunFolder& run, const PlacedRun& place) {
+  const auto beside = [](auto make) { return std::async(std::launch::async, make); };
+  std::future<cv::Mat> drawn = beside([&] { return top_view_of(place.view); });
+  const MapPictures maps = map_pictures(run, place);
+  const cv::Mat top_view = drawn.get();
+  std::future<std::string> plate = beside([&] { return plate_section(run, top_view, maps.pair); }),
+                           frame = beside([&] { return frame_section(run); }),
+                           seen = beside([&] { return top_view_section(run, place.view, top_view); }),
+                           map = beside([&] { return map_section(run, maps); });
+  const std::string scene =
+      run.header.kind == "run" ? section("Scene and plan", scene_section(run)) : std::string();
+  return plate.get() + section("What the cameras saw", frame.get()) +
+         section("Trajectory and cloud", seen.get()) + section("Occupancy map", map.get()) + scene;
+}
+
 std::string page(const RunFolder& run) {
   const RunHeader& header = run.header;
   const PlacedRun place = placed(run);
@@ -316,19 +355,13 @@ std::string page(const RunFolder& run) {
           "</h1>";
   html += "<p class=\"summary\">" + escape_html(header.summary) + "</p>";
   html += experiment(header) + verdict(header) + tiles(run) + "</header>\n<main>";
-  std::string figures = "<section><h2>What the cameras saw</h2>" + frame_section(run) + "</section>\n" +
-                        "<section><h2>Trajectory and cloud</h2>" + top_view_section(run, place.view) +
-                        "</section>\n" + "<section><h2>Occupancy map</h2>" + map_section(run, place) +
-                        "</section>\n";
-  if (header.kind == "run")
-    figures += "<section><h2>Scene and plan</h2>" + scene_section(run) + "</section>\n";
-  html += plate_section(run) + figures;
-  html += "<section><h2>Over time</h2>" + error_plots(run, place.view) + count_plot(run) + time_plot(run) +
-          memory_plot(run) + "</section>\n";
-  html += "<section><h2>Numbers</h2>" + expectation_table(header) + oracle_table(run.oracles) +
-          "<div class=\"tables\">" + metric_tables(run.metrics) + "</div>" + stage_table(run.frames) +
-          "</section>\n";
-  html += "<section><h2>Where it comes from</h2>" + provenance_table(header) + "</section></main>\n";
+  html += picture_sections(run, place);
+  html += section("Over time",
+                  error_plots(run, place.view) + count_plot(run) + time_plot(run) + memory_plot(run));
+  html +=
+      section("Numbers", expectation_table(header) + oracle_table(run.oracles) + "<div class=\"tables\">" +
+                             metric_tables(run.metrics) + "</div>" + stage_table(run.frames));
+  html += section("Where it comes from", provenance_table(header)) + "</main>\n";
   html +=
       "<footer>Made by groundloop from the run folder alone. Figures correspond to those of the paper that "
       "preset <code>paper</code> follows.</footer></body></html>\n";

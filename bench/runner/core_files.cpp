@@ -11,7 +11,13 @@ void write_core_files(const OutputFolder& out, const slam::Pipeline& core) {
   write_key_frames_csv(out.file("keyframes.csv"), core.key_frames());
   write_cloud_ply(out.file("cloud.ply"), core.cloud());
   slam::write_map(out.file("map"), core.map());
-  write_map3d(out.file("map3d"), core.layers(), core.options().mapping.layer_heights_m);
+}
+
+std::future<void> map3d_beside(const OutputFolder& out, const slam::Pipeline& core) {
+  return std::async(std::launch::async, [folder = out.file("map3d"), layers = core.layers(),
+                                         heights_m = core.options().mapping.layer_heights_m] {
+    write_map3d(folder, layers, heights_m);
+  });
 }
 
 }  // namespace groundloop::bench

@@ -141,8 +141,9 @@ std::vector<std::string> export_frame(const sim::Scenario& asked, int64_t frame,
                              "a plan whose path does not depend on the SLAM: --set plan.feedback=plan"});
   }
   const sim::HeadModel head = sim::carried_head(scenario);
+  std::future<sim::RendererInfo> renderer = renderer_from_behind(scenario.render.settings());
   const sim::World world = sim::World::load(scenario);
-  SimulatedSource source(scenario, world, head, std::nullopt);
+  SimulatedSource source(scenario, world, head, renderer.get(), std::nullopt);
   if (frame < 0 || frame >= *source.size()) {
     throw InputError(Problem{"", 0, "frame", fmt::format("{}", frame),
                              fmt::format("a pair of the run, 0 to {}", *source.size() - 1)});

@@ -118,6 +118,7 @@ RunOutcome replay(const ReplayOptions& options, const JobControl& control) {
     memory.push_back(memory_mb());
   };
   const CoreRun core_run = run_core(*source, core, name, options.frames, observe, control);
+  std::future<void> map3d = map3d_beside(out, core);
 
   RunOutcome outcome{name, 0, folder, 0, {}, {}, {}};
   Metrics& metrics = outcome.metrics;
@@ -165,6 +166,7 @@ RunOutcome replay(const ReplayOptions& options, const JobControl& control) {
   header.judged = judged_metrics(expected, metrics, outcome.verdict);
   write_run_json(out.file("run.json"), header);
   write_report(out.path());
+  map3d.get();
   out.publish();
   return outcome;
 }

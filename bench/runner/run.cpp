@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <future>
 #include <limits>
 #include <mutex>
 #include <opencv2/imgcodecs.hpp>
@@ -127,8 +128,10 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   const sim::Scenario scenario = sim::realized(job.scenario);
   const slam::SlamOptions options = slam_options(scenario);
   const sim::HeadModel head = sim::carried_head(scenario);
+  std::future<sim::RendererInfo> renderer_found = renderer_from_behind(scenario.render.settings());
   const sim::World world = sim::World::load(scenario);
-  SimulatedSource source(scenario, world, head, job.frames, job.cache);
+  const sim::RendererInfo renderer = renderer_found.get();
+  SimulatedSource source(scenario, world, head, renderer, job.frames, job.cache);
   OutputFolder out(job.folder);
 
   // drive, see, process
@@ -156,11 +159,12 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   };
   RunOutcome outcome{scenario.name, scenario.seed, job.folder, 0, {}, {}, job.oracles};
   const std::string name = fmt::format("{}-{}", outcome.title(), scenario.seed);
-  if (control.note) control.note(name, preflight_line(scenario, source.renderer_info()));
+  if (control.note) control.note(name, preflight_line(scenario, renderer));
   const CoreRun core_run =
       run_core(source, core, name, std::nullopt, observe, control, [&source] { source.abandon(); });
 
   // compare with the truth
+  std::future<void> map3d = map3d_beside(out, core);
   const RunJudgement judged = judge.judge(core_run.frames);
   std::vector<double> render_ms;
   for (size_t i = 0; i < notes.size(); ++i) {
@@ -175,6 +179,11 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   outcome.verdict = bench::judge(scenario.expect, outcome.metrics);
 
   // write it down
+  std::future<void> pictures = std::async(std::launch::async, [&] {
+    figures.write(out.file("figures"));
+    cv::imwrite(out.file("figures/preview.png"),
+                preview_picture(scene.standing(), scene.band(), source.simulation()));
+  });
   slam::write_file_atomically(out.file("scenario.yaml"),
                               [&](std::ostream& text) { text << sim::to_yaml(scenario); });
   if (head.raw) {
@@ -186,13 +195,12 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   write_truth(out, judge.exact_map(), scene.standing(), scene.band());
   write_frames_csv(out.file("frames.csv"), core_run.frames, notes);
   write_metrics_json(out.file("metrics.json"), outcome.metrics);
-  figures.write(out.file("figures"));
-  cv::imwrite(out.file("figures/preview.png"),
-              preview_picture(scene.standing(), scene.band(), source.simulation()));
-  RunHeader header = header_of(scenario, outcome, source.renderer_info());
+  RunHeader header = header_of(scenario, outcome, renderer);
   header.frames = static_cast<int64_t>(core_run.frames.size());
   write_run_json(out.file("run.json"), header);
+  pictures.get();
   write_report(out.path());
+  map3d.get();
   out.publish();
   return outcome;
 }
@@ -227,7 +235,7 @@ std::vector<RunOutcome> run(const RunOptions& options, const JobControl& control
     jobs.push_back({scenario, options.frames, options.oracles, folder, cache.get()});
   }
   std::vector<RunOutcome> outcomes = run_all(jobs, options.jobs, control);
-  if (cache) cache->trim();
+  if (cache && cache->stored() > 0) cache->trim();
   return outcomes;
 }
 

@@ -14,16 +14,6 @@ namespace {
 constexpr size_t kAhead = 6;          ///< pairs in the making, or waiting
 constexpr int64_t kPairsForTwo = 30;  ///< from which two threads render
 
-/// Mesa's own threads start with the first context of the process, and keep its thread's priority.
-sim::RendererInfo info_from_behind(const sim::RenderSettings& settings) {
-  return std::async(std::launch::async,
-                    [&] {
-                      stand_back();
-                      return sim::renderer_info(settings);
-                    })
-      .get();
-}
-
 /// What the core is told of the head: ideal, or as it will be rectified.
 slam::StereoRig told_rig(const sim::HeadModel& head, const std::optional<RawImages>& raw) {
   if (!raw) return head.rig();
@@ -34,9 +24,17 @@ slam::StereoRig told_rig(const sim::HeadModel& head, const std::optional<RawImag
 
 }  // namespace
 
+std::future<sim::RendererInfo> renderer_from_behind(const sim::RenderSettings& settings) {
+  return std::async(std::launch::async, [settings] {
+    stand_back();  // Mesa's own threads start with the first context of the process, and keep its thread's
+                   // priority
+    return sim::renderer_info(settings);
+  });
+}
+
 SimulatedSource::SimulatedSource(const sim::Scenario& scenario, const sim::World& world,
-                                 const sim::HeadModel& head, std::optional<int64_t> frames,
-                                 sim::PairCache* cache)
+                                 const sim::HeadModel& head, const sim::RendererInfo& renderer,
+                                 std::optional<int64_t> frames, sim::PairCache* cache)
     : scenario_(scenario),
       world_(world),
       head_(head),
@@ -45,11 +43,9 @@ SimulatedSource::SimulatedSource(const sim::Scenario& scenario, const sim::World
       simulation_(world, head, scenario, [this](int64_t exposure) { return pose_of_exposure(exposure); }),
       arrivals_(sim::arrivals(scenario.faults, scenario.seed, simulation_.exposures(), head.period_ns())),
       size_(std::min(frames.value_or(INT64_MAX), static_cast<int64_t>(arrivals_.size()))),
-      renderer_info_(info_from_behind(scenario.render.settings())),
-      ingredients_{
-          world,    head,
-          scenario, raw_ ? &*raw_ : nullptr,
-          cache,    cache != nullptr ? run_key(world, head, scenario, renderer_info_) : sim::KeyBuilder()},
+      ingredients_{world,    head,
+                   scenario, raw_ ? &*raw_ : nullptr,
+                   cache,    cache != nullptr ? run_key(world, head, scenario, renderer) : sim::KeyBuilder()},
       truth_(static_cast<size_t>(size_)) {
   if (size_ > 0) return;
   throw InputError(Problem{scenario.file, scenario.faults.empty() ? 0 : scenario.faults.front().line,

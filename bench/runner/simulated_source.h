@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +37,10 @@ struct FrameTruth {
   std::optional<sim::ExposureSetting> setting;  ///< of a raw head's left camera
 };
 
+/// Starts Mesa, behind whoever calls, and tells what it is: a fifth of a second in which the world may be
+/// read.
+std::future<sim::RendererInfo> renderer_from_behind(const sim::RenderSettings& settings);
+
 /// The simulator as a source of stereo pairs. Physics runs ahead in a thread of its own, rendering in two:
 /// one prepares its triangles while Mesa's own threads fill those of the other. The truth of each pair goes
 /// past the core, into truth().
@@ -47,12 +52,14 @@ struct FrameTruth {
 /// planned motion told with the next pair covers the whole gap, since the robot kept count of it.
 class SimulatedSource : public slam::StereoSource {
  public:
+  /// @param renderer  what makes the images that are not found in the cache (renderer_from_behind())
   /// @param frames  deliver only the first so many pairs
   /// @param cache   where finished pairs are looked for and left; null: all are rendered. Must outlive the
   /// source
   /// @throws InputError when the scenario's models do not fit together or its plan runs into something
   SimulatedSource(const sim::Scenario& scenario, const sim::World& world, const sim::HeadModel& head,
-                  std::optional<int64_t> frames, sim::PairCache* cache = nullptr);
+                  const sim::RendererInfo& renderer, std::optional<int64_t> frames,
+                  sim::PairCache* cache = nullptr);
   ~SimulatedSource() override { abandon(); }
 
   const slam::StereoRig& rig() const override { return rig_; }
@@ -80,8 +87,6 @@ class SimulatedSource : public slam::StereoSource {
 
   /// Truth of pair `index`. May be read from another thread once that pair was delivered to it.
   const FrameTruth& truth(int64_t index) const { return truth_[static_cast<size_t>(index)]; }
-  /// What makes the images that are not found in the cache.
-  const sim::RendererInfo& renderer_info() const { return renderer_info_; }
   /// Pairs delivered that were rendered, not found in the cache.
   int64_t rendered() const { return rendered_; }
   const sim::Simulation& simulation() const { return simulation_; }
@@ -113,7 +118,6 @@ class SimulatedSource : public slam::StereoSource {
   sim::Simulation simulation_;
   const std::vector<sim::Arrival> arrivals_;
   const int64_t size_;
-  const sim::RendererInfo renderer_info_;
   const PairIngredients ingredients_;
   std::vector<FrameTruth> truth_;
   int64_t exposed_ = 0;

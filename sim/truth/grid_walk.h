@@ -14,26 +14,33 @@ namespace groundloop::sim {
 template <class Visit>
 void walk_cells(const slam::GridGeometry& grid, const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m,
                 Visit&& visit) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
   const Eigen::Vector2d origin_m(grid.x_min_m, grid.y_min_m);
   const Eigen::Vector2d from = (from_m - origin_m) / grid.cell_m, to = (to_m - origin_m) / grid.cell_m;
-  const Eigen::Vector2d along = to - from;
-  int cell[2], step[2];
-  double next[2], spacing[2];  // parameter of the next border and between borders, for each axis
-  int steps = 0;
-  for (int axis = 0; axis < 2; ++axis) {
-    cell[axis] = static_cast<int>(std::floor(from[axis]));
-    steps += std::abs(static_cast<int>(std::floor(to[axis])) - cell[axis]);
-    step[axis] = along[axis] < 0 ? -1 : 1;
-    spacing[axis] = along[axis] != 0 ? std::abs(1 / along[axis]) : std::numeric_limits<double>::infinity();
-    const double border = step[axis] > 0 ? cell[axis] + 1 - from[axis] : from[axis] - cell[axis];
-    next[axis] = along[axis] != 0 ? border * spacing[axis] : std::numeric_limits<double>::infinity();
-  }
-  for (;; --steps) {
-    if (grid.contains(cell[0], cell[1])) visit(cell[0], cell[1]);
+  struct Axis {
+    int cell, step, steps;
+    double next, spacing;  // parameter of the next border, and between borders
+  };
+  const auto axis = [](double start, double end) {
+    const double along = end - start;
+    const int cell = static_cast<int>(std::floor(start));
+    const int steps = std::abs(static_cast<int>(std::floor(end)) - cell);
+    if (along == 0) return Axis{cell, 1, steps, kNever, kNever};
+    const double spacing = std::abs(1 / along);
+    return along < 0 ? Axis{cell, -1, steps, (start - cell) * spacing, spacing}
+                     : Axis{cell, 1, steps, (cell + 1 - start) * spacing, spacing};
+  };
+  Axis x = axis(from.x(), to.x()), y = axis(from.y(), to.y());
+  for (int steps = x.steps + y.steps;; --steps) {
+    if (grid.contains(x.cell, y.cell)) visit(x.cell, y.cell);
     if (steps <= 0) return;
-    const int axis = next[0] < next[1] ? 0 : 1;
-    cell[axis] += step[axis];
-    next[axis] += spacing[axis];
+    // Which border comes next is as good as chance: selected, since a branch would be guessed wrongly half
+    // the time.
+    const bool across_x = x.next < y.next;
+    x.cell += across_x ? x.step : 0;
+    y.cell += across_x ? 0 : y.step;
+    x.next += across_x ? x.spacing : 0.0;
+    y.next += across_x ? 0.0 : y.spacing;
   }
 }
 

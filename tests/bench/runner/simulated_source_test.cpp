@@ -24,7 +24,8 @@ class SimulatedSourceTest : public testing::Test {
             "scenarios/smoke.yaml",
             {{"render.profile", "fast"}, {"head.model", std::filesystem::absolute(head)}})),
         head_(sim::carried_head(scenario_)),
-        world_(sim::World::load(scenario_)) {}
+        world_(sim::World::load(scenario_)),
+        renderer_(renderer_from_behind(scenario_.render.settings()).get()) {}
 
   std::vector<slam::StereoFrame> pairs(SimulatedSource& source) const {
     std::vector<slam::StereoFrame> all;
@@ -35,17 +36,18 @@ class SimulatedSourceTest : public testing::Test {
   sim::Scenario scenario_;
   sim::HeadModel head_;
   const sim::World world_;
+  const sim::RendererInfo renderer_;
 };
 
 TEST_F(SimulatedSourceTest, TwoMakersGiveTheSameAsOneAndAsAPairAlone) {
-  SimulatedSource few(scenario_, world_, head_, 6), many(scenario_, world_, head_, 32);
+  SimulatedSource few(scenario_, world_, head_, renderer_, 6), many(scenario_, world_, head_, renderer_, 32);
   const std::vector<slam::StereoFrame> by_one = pairs(few), by_two = pairs(many);
   ASSERT_EQ(by_one.size(), 6U);
   ASSERT_EQ(by_two.size(), 32U);
   for (size_t i = 0; i < by_one.size(); ++i) EXPECT_TRUE(same(by_one[i], by_two[i])) << i;
 
   for (const int64_t index : {0, 17, 31}) {
-    SimulatedSource source(scenario_, world_, head_, std::nullopt);
+    SimulatedSource source(scenario_, world_, head_, renderer_, std::nullopt);
     const SimulatedSource::LonePair lone = source.alone(index);
     EXPECT_TRUE(same(lone.frame, by_two[static_cast<size_t>(index)])) << index;
     EXPECT_EQ(source.rendered(), 1);
@@ -59,12 +61,12 @@ TEST_F(SimulatedSourceTest, TheSecondRunRendersNothing) {
   const auto folder = std::filesystem::temp_directory_path() / "simulated_source_cache";
   std::filesystem::remove_all(folder);
   sim::PairCache cache(folder);
-  SimulatedSource first(scenario_, world_, head_, 5, &cache);
+  SimulatedSource first(scenario_, world_, head_, renderer_, 5, &cache);
   const std::vector<slam::StereoFrame> rendered = pairs(first);
   EXPECT_EQ(first.rendered(), 5);
   EXPECT_EQ(cache.stored(), 5);
 
-  SimulatedSource second(scenario_, world_, head_, 5, &cache);
+  SimulatedSource second(scenario_, world_, head_, renderer_, 5, &cache);
   const std::vector<slam::StereoFrame> found = pairs(second);
   EXPECT_EQ(second.rendered(), 0);
   for (size_t i = 0; i < rendered.size(); ++i) EXPECT_TRUE(same(rendered[i], found[i])) << i;
@@ -79,7 +81,7 @@ TEST_F(SimulatedSourceTest, WhateverChangesAPixelIsRenderedAgain) {
     sim::Scenario scenario = scenario_;
     sim::HeadModel head = head_;
     change(scenario, head);
-    SimulatedSource source(scenario, world_, head, 2, &cache);
+    SimulatedSource source(scenario, world_, head, renderer_, 2, &cache);
     pairs(source);
     return source.rendered();
   };
@@ -121,11 +123,11 @@ TEST_F(RawSourceTest, AutomaticExposureGoesOnFromFoundPairs) {
   const auto folder = std::filesystem::temp_directory_path() / "simulated_source_raw";
   std::filesystem::remove_all(folder);
   sim::PairCache cache(folder);
-  SimulatedSource none(scenario_, world_, head_, 5);
+  SimulatedSource none(scenario_, world_, head_, renderer_, 5);
   const std::vector<slam::StereoFrame> wanted = pairs(none);
-  SimulatedSource first(scenario_, world_, head_, 3, &cache);
+  SimulatedSource first(scenario_, world_, head_, renderer_, 3, &cache);
   pairs(first);
-  SimulatedSource second(scenario_, world_, head_, 5, &cache);
+  SimulatedSource second(scenario_, world_, head_, renderer_, 5, &cache);
   const std::vector<slam::StereoFrame> half_found = pairs(second);
   EXPECT_EQ(second.rendered(), 2);
   for (size_t i = 0; i < wanted.size(); ++i) EXPECT_TRUE(same(wanted[i], half_found[i])) << i;
