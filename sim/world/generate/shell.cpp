@@ -9,24 +9,26 @@
 namespace groundloop::sim {
 namespace {
 
-constexpr double kWall_m = 0.1;          ///< thickness of outer walls; they stand outside of the rooms
+constexpr double kWall_m = 0.1;  ///< thickness of outer walls; they stand outside of the rooms
 constexpr double kDoorHeight_m = 2.1;
-constexpr double kSkirting_m = 0.045;    ///< half height
+constexpr double kSkirting_m = 0.045;  ///< half height
 
 FloorKind floor_kind(const WorldRecipe& recipe, Dice& dice) {
   const int drawn = dice.integer(0, 3);
   if (recipe.floor != FloorKind::kAny) return recipe.floor;
-  if (recipe.style == WorldStyle::kLowTexture && drawn == 3) return FloorKind::kWood;  // something must be seen
-  constexpr FloorKind kKinds[] = {FloorKind::kTiles, FloorKind::kCarpet, FloorKind::kWood, FloorKind::kConcrete};
+  if (recipe.style == WorldStyle::kLowTexture && drawn == 3)
+    return FloorKind::kWood;  // something must be seen
+  constexpr FloorKind kKinds[] = {FloorKind::kTiles, FloorKind::kCarpet, FloorKind::kWood,
+                                  FloorKind::kConcrete};
   return kKinds[drawn];
 }
 
-std::string floor_material(SceneWriter& scene, const WorldRecipe& recipe, Dice& dice) {
+std::string floor_material(SceneWriter& scene, const WorldRecipe& recipe, FloorKind floor, Dice& dice) {
   struct Kind {
     const char* texture;
     double per_metre, darkest, lightest, shiniest;
   };
-  const auto kind = [](FloorKind floor) -> Kind {
+  const auto kind = [floor]() -> Kind {
     switch (floor) {
       case FloorKind::kCarpet:
         return {"carpet", 0.8, 0.8, 1, 0};
@@ -37,7 +39,7 @@ std::string floor_material(SceneWriter& scene, const WorldRecipe& recipe, Dice& 
       default:
         return {"floor_tiles", 0.55, 0.8, 1, 0.3};
     }
-  }(floor_kind(recipe, dice));
+  }();
   Finish finish;
   finish.texture = kind.texture;
   finish.uniform = true;
@@ -49,9 +51,11 @@ std::string floor_material(SceneWriter& scene, const WorldRecipe& recipe, Dice& 
   return scene.material(finish);
 }
 
-std::string wall_material(SceneWriter& scene, const WorldRecipe& recipe, Dice& dice) {
+/// A corridor is walls and floor: where its floor shows nothing, its walls must.
+std::string wall_material(SceneWriter& scene, const WorldRecipe& recipe, FloorKind floor, Dice& dice) {
   Finish finish;
-  const bool plaster = dice.chance(0.5) || recipe.style == WorldStyle::kLowTexture;
+  const bool must_show = recipe.style == WorldStyle::kCorridor && floor == FloorKind::kConcrete;
+  const bool plaster = (dice.chance(0.5) && !must_show) || recipe.style == WorldStyle::kLowTexture;
   finish.texture = plaster ? "plain_plaster" : "painted_blocks";
   finish.uniform = true;
   finish.repeat_x = finish.repeat_y = (plaster ? 0.4 : 0.625) * dice.uniform(0.85, 1.15);
@@ -145,17 +149,19 @@ void draw_shell(SceneWriter& scene, const FloorPlan& plan, const WorldRecipe& re
                 Dice& dice) {
   draw_lights(scene, dice);
   const double half_x = plan.width_m / 2 + kWall_m, half_y = plan.depth_m / 2 + kWall_m;
-  scene.floor(floor_material(scene, recipe, dice), half_x, half_y, 0, 0);
+  const FloorKind floor = floor_kind(recipe, dice);
+  scene.floor(floor_material(scene, recipe, floor, dice), half_x, half_y, 0, 0);
   scene.box(ceiling_material(scene, dice), {half_x, half_y, 0.05}, {0, 0, plan.height_m + 0.05});
 
-  const std::string common = wall_material(scene, recipe, dice), other = wall_material(scene, recipe, dice);
+  const std::string common = wall_material(scene, recipe, floor, dice),
+                    other = wall_material(scene, recipe, floor, dice);
   Finish dark;
   dark.rgb = {0.30, 0.28, 0.26};
   const std::string skirting = scene.material(dark);
   for (size_t i = 0; i < plan.sides.size(); ++i) {
     const WallSide& side = plan.sides[i];
-    scene.begin_body(fmt::format("wall_{}", i + 1), side.x_at(side.length_m / 2), side.y_at(side.length_m / 2),
-                     side.yaw_deg);
+    scene.begin_body(fmt::format("wall_{}", i + 1), side.x_at(side.length_m / 2),
+                     side.y_at(side.length_m / 2), side.yaw_deg);
     if (side.outside) {
       scene.panel(dice.chance(0.7) ? common : other,
                   {side.length_m / 2 + kWall_m, plan.height_m / 2, kWall_m / 2},
