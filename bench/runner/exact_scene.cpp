@@ -25,6 +25,7 @@ sim::TruthWorld exact_scene(const sim::World& world) {
 
 SceneInTime::SceneInTime(const sim::World& world, const sim::Scenario& scenario)
     : band_(map_band(scenario)),
+      driven_(!scenario.plan.is_for_arm()),
       motion_(world, scenario),
       state_(state_of(motion_, world)),
       seen_(world, *state_, sim::People::kSeen),

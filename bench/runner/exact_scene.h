@@ -35,9 +35,12 @@ class SceneInTime {
   /// What a map should hold: without people, furniture where it stands now.
   const sim::TruthWorld& standing() const { return standing_; }
   const MapBand& band() const { return band_; }
+  /// Whether a robot drives; else an arm carries the camera, and its plan answers for what it touches.
+  bool driven() const { return driven_; }
 
  private:
   const MapBand band_;
+  const bool driven_;
   sim::SceneMotion motion_;
   sim::World::DataPtr state_;
   sim::TruthWorld seen_, standing_;

@@ -13,6 +13,8 @@
 namespace groundloop::bench {
 namespace {
 
+constexpr double kTouch_m = 0.01;  ///< distance that counts as touching: physics keeps solid things apart
+
 /// The ceiling of the mapper: the same points at true poses, so that its errors and the localizer's separate.
 /// Drawn beside the rest of the judgement; the core must outlive it.
 std::future<slam::OccupancyMap> map_at_true_poses(const slam::Pipeline& core, const SimulatedSource& source) {
@@ -56,13 +58,17 @@ RunJudge::RunJudge(SceneInTime& scene, const SimulatedSource& source, const slam
 void RunJudge::observe(const slam::StereoFrame& frame, const slam::FrameResult& result) {
   const FrameTruth& truth = source_.truth(frame.index);
   recovery_.observe({result, frame.T_previous_left, truth.T_world_left}, [this] { return mapped_views(); });
-  looking_.give({result, static_cast<double>(truth.seen_ns) * 1e-9, truth.T_world_seen});
+  looking_.give({result, static_cast<double>(truth.seen_ns) * 1e-9, truth.T_world_seen, truth.T_world_body});
 }
 
 void RunJudge::look(const Seen& seen) {
   if (scene_.move_to(seen.time_s)) exact_.look_again();
   exact_.look(seen.result.index, seen.T_world_left);
   stage_errors_.push_back(stages_.judge(seen.result, seen.T_world_left));
+  if (!scene_.driven()) return;
+  const Eigen::Vector3d p_world = seen.T_world_body.translation();
+  const double yaw_rad = slam::yaw_rad(seen.T_world_body.linear());
+  collisions_ += scene_.standing().collision(p_world.x(), p_world.y(), yaw_rad, kTouch_m) ? 1 : 0;
 }
 
 RunJudgement RunJudge::judge(const std::vector<slam::FrameResult>& frames) {
@@ -77,6 +83,7 @@ RunJudgement RunJudge::judge(const std::vector<slam::FrameResult>& frames) {
   run.metrics.merge(recovery_.metrics());
   run.metrics.merge(stages_.total().metrics());
   run.metrics.merge(uncertainty());
+  run.metrics.merge(drive());
 
   run.without_links = without_links(frames, core_.trajectory());
   run.metrics.merge(correction_metrics(run.truth, run.without_links, core_.trajectory()));
@@ -126,6 +133,11 @@ Metrics RunJudge::uncertainty() const {
                  T_world_seen(before.index).inverse() * T_world_seen(now.index)));
   }
   return sum.metrics();
+}
+
+Metrics RunJudge::drive() const {
+  if (!scene_.driven()) return {};
+  return {{"drive.collisions", collisions_}};
 }
 
 std::vector<MappedView> RunJudge::mapped_views() const {

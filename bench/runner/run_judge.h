@@ -48,12 +48,14 @@ class RunJudge {
     slam::FrameResult result;
     double time_s;
     slam::Pose T_world_left;
+    slam::Pose T_world_body;
   };
   void look(const Seen& seen);
   slam::Pose T_world_seen(int64_t frame) const { return source_.truth(frame).T_world_seen; }
   Metrics map_metrics(const slam::Pose& T_world_map, const slam::OccupancyMap& at_true_poses) const;
   LoopScore loops() const;
   Metrics uncertainty() const;
+  Metrics drive() const;
   std::vector<MappedView> mapped_views() const;
 
   SceneInTime& scene_;
@@ -63,9 +65,9 @@ class RunJudge {
   StageJudge stages_;
   ExactMapper exact_;
   std::vector<StageErrors> stage_errors_;  ///< a frame
+  int collisions_ = 0;                     ///< frames at which the robot touched something
   RecoveryJudge recovery_;
-  Beside<Seen>
-      looking_;  ///< last, so that it ends before what it uses: scene_, stages_, exact_, stage_errors_
+  Beside<Seen> looking_;  ///< last, so that it ends before what it uses, all above
 };
 
 }  // namespace groundloop::bench

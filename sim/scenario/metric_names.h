@@ -47,6 +47,7 @@ inline constexpr auto kMetricNames = std::to_array<const char*>({
     "loop.recall",
     "loop.ate_before_m",
     "loop.ate_after_m",
+    "drive.collisions",
     "timing.render_ms",
     "timing.slam_ms_median",
     "timing.slam_ms_p99",
