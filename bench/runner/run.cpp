@@ -181,8 +181,7 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   // write it down
   std::future<void> pictures = std::async(std::launch::async, [&] {
     figures.write(out.file("figures"));
-    cv::imwrite(out.file("figures/preview.png"),
-                preview_picture(scene.standing(), scene.band(), source.simulation()));
+    cv::imwrite(out.file("figures/preview.png"), preview_picture(world, scenario, source.simulation()));
   });
   slam::write_file_atomically(out.file("scenario.yaml"),
                               [&](std::ostream& text) { text << sim::to_yaml(scenario); });

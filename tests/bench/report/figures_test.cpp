@@ -228,13 +228,38 @@ TEST(DrawPreview, ShowsWhereTheCameraLooksWhenThatIsNotTheWay) {
   EXPECT_GT(aside, ahead + 500);
 }
 
+/// In a room of 10 m, drawn 1500 px wide or a little less.
+TEST(DrawPreview, ShowsWhoWalksWhatIsMovedAndWhereTheRobotIsCarried) {
+  constexpr Colour kPathAfter(0x16a0a0), kPerson(0x8a3ab9), kMoved(0xd9730d), kKidnapped(0xd6246e);
+  const std::vector<Footprint> room = {{"floor", {{0, 0}, {10, 0}, {10, 5}, {0, 5}}}};
+  const std::vector<PlanPose> path = {{1, 1, 0}, {3, 1, 0}};
+  const cv::Mat plain = draw_preview(room, path, path.front());
+  for (const Colour colour : {kPathAfter, kPerson, kMoved, kKidnapped})
+    EXPECT_EQ(count_near(plain, colour), 0);
+
+  DrawnEvents events;
+  events.people.push_back({"anna", {{5, 1}, {9, 1}}, true});
+  const Footprint chair{"chair", {{1, 3}, {2, 3}, {2, 4}, {1, 4}}};
+  const Footprint there{"chair", {{7, 3}, {8, 3}, {8, 4}, {7, 4}}};
+  events.moves.push_back({12, {chair}, {there}});
+  events.kidnappings.push_back({28, path.back(), {{3, 4.5, 0}, {9, 4.5, 0}}});
+  const cv::Mat image = draw_preview(room, path, path.front(), events);
+  // dashes of 9 px in 15, and 2.5 px wide, of which at least one pixel has the full colour
+  EXPECT_GT(count_near(image, kPerson), 4 * 140 * 9 / 15);
+  EXPECT_GT(count_near(image, kMoved), 5 * 140 * 9 / 15);
+  EXPECT_GT(count_near(image, kKidnapped), 3.5 * 140 * 9 / 15);
+  // the way goes on where the robot was put down: 6 m more
+  EXPECT_GT(count_near(image, kPathAfter), 6 * 140);
+}
+
 TEST(DrawPlate, PicturesOfARowHaveOneHeightAndFillTheWidth) {
   const cv::Mat red(100, 200, CV_8UC3, cv::Scalar(0, 0, 255)), blue(300, 300, CV_8UC3, cv::Scalar(255, 0, 0));
   const cv::Mat grey(50, 100, CV_8UC1, cv::Scalar(100));
   const cv::Mat plate = draw_plate({{{"a", red}, {"b", blue}}, {{"c", grey}}});
   EXPECT_EQ(plate.cols, 1600);
   EXPECT_EQ(plate.type(), CV_8UC3);
-  // 1600 - 2 * 16 - 20 = 1548 for two pictures, twice and once as wide as high: 516 px high; less half a frame's line
+  // 1600 - 2 * 16 - 20 = 1548 for two pictures, twice and once as wide as high: 516 px high; less half a
+  // frame's line
   EXPECT_NEAR(count_near(plate, Colour(0xff0000), 4), (1032 - 3) * (516 - 3), 800);
   EXPECT_NEAR(count_near(plate, Colour(0x0000ff), 4), (516 - 3) * (516 - 3), 800);
   EXPECT_NEAR(count_near(plate, Colour(0x646464), 2), (1568 - 3) * (784 - 3), 800);
