@@ -111,7 +111,7 @@ RunOutcome replay(const ReplayOptions& options, const JobControl& control) {
 
   slam::Pipeline core(source->rig(), core_options);
   const int64_t frames = std::min(options.frames.value_or(INT64_MAX), source->size().value_or(INT64_MAX));
-  FigureRecorder figures(source->rig(), frames == INT64_MAX ? 0 : frames);
+  FigureRecorder figures(source->rig(), frames == INT64_MAX ? 0 : frames, out.file("figures"));
   std::vector<double> memory;
   const auto observe = [&](const slam::StereoFrame& frame, const slam::FrameResult& result) {
     figures.observe(frame, result, core);
@@ -152,7 +152,7 @@ RunOutcome replay(const ReplayOptions& options, const JobControl& control) {
   if (!links.empty()) write_links_csv(out.file("links.csv"), links);
   write_frames_csv(out.file("frames.csv"), core_run.frames, notes);
   write_metrics_json(out.file("metrics.json"), metrics);
-  figures.write(out.file("figures"));
+  figures.finish();
   RunHeader header = run_header(outcome.verdict);
   header.name = name;
   header.summary = "Recorded sequence of " + std::to_string(core_run.frames.size()) + " stereo pairs.";

@@ -18,6 +18,7 @@
 #include "bench/runner/figure_recorder.h"
 #include "bench/runner/output_folder.h"
 #include "bench/runner/preview.h"
+#include "bench/runner/priority.h"
 #include "bench/runner/provenance.h"
 #include "bench/runner/run_files.h"
 #include "bench/runner/run_header.h"
@@ -141,7 +142,11 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
                            [&source](int64_t frame) { return source.truth(frame).T_world_seen; });
   slam::Pipeline core(source.rig(), options, job.oracles.empty() ? nullptr : &oracle);
   RunJudge judge(scene, source, core);
-  FigureRecorder figures(source.rig(), *source.size());
+  FigureRecorder figures(source.rig(), *source.size(), out.file("figures"));
+  std::future<void> preview = std::async(std::launch::async, [&] {
+    stand_back();
+    cv::imwrite(out.file("figures/preview.png"), preview_picture(world, scenario, source.simulation()));
+  });
   std::vector<FrameNotes> notes;
   const auto observe = [&](const slam::StereoFrame& frame, const slam::FrameResult& result) {
     source.steer_by(result);
@@ -179,10 +184,6 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   outcome.verdict = bench::judge(scenario.expect, outcome.metrics);
 
   // write it down
-  std::future<void> pictures = std::async(std::launch::async, [&] {
-    figures.write(out.file("figures"));
-    cv::imwrite(out.file("figures/preview.png"), preview_picture(world, scenario, source.simulation()));
-  });
   slam::write_file_atomically(out.file("scenario.yaml"),
                               [&](std::ostream& text) { text << sim::to_yaml(scenario); });
   if (head.raw) {
@@ -197,7 +198,8 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   RunHeader header = header_of(scenario, outcome, renderer);
   header.frames = static_cast<int64_t>(core_run.frames.size());
   write_run_json(out.file("run.json"), header);
-  pictures.get();
+  figures.finish();
+  preview.get();
   write_report(out.path());
   map3d.get();
   out.publish();
