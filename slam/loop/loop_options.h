@@ -9,7 +9,7 @@ struct LoopOptions {
   bool enabled = true;
   int descriptors = 400;           ///< described corners a key frame
   int landmarks = 240;             ///< looked for in the other images, at most, of those that should be there
-  int candidates = 5;              ///< stored views tried a key frame
+  int candidates = 3;              ///< stored views tried a key frame
   int min_age_frames = 30;         ///< younger views, and those whose features are tracked yet, are no news
   int max_views = 1000;            ///< beyond it no further view is stored
   int min_inliers = 30;            ///< landmarks that agree on one motion
