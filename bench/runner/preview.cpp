@@ -108,7 +108,7 @@ std::string preview(const sim::Scenario& asked, const std::string& file) {
   const sim::HeadModel head = sim::carried_head(scenario);
   const sim::World world = sim::World::load(scenario);
   const sim::Simulation simulation(world, head, scenario);
-  const std::string out = file.empty() ? scenario.name + ".png" : file;
+  std::string out = file.empty() ? scenario.name + ".png" : file;
   std::vector<uint8_t> png;
   cv::imencode(".png", preview_picture(world, scenario, simulation), png);
   slam::write_file_atomically(out, [&](std::ostream& stream) {

@@ -36,7 +36,6 @@ SimulatedSource::SimulatedSource(const sim::Scenario& scenario, const sim::World
                                  const sim::HeadModel& head, const sim::RendererInfo& renderer,
                                  std::optional<int64_t> frames, sim::PairCache* cache)
     : scenario_(scenario),
-      world_(world),
       head_(head),
       raw_(head.raw ? std::make_optional<RawImages>(head, scenario) : std::nullopt),
       rig_(told_rig(head, raw_)),
@@ -124,6 +123,7 @@ void SimulatedSource::start() {
   // A second maker costs a context with all textures: too much for a few pairs.
   const bool two = PairMaker::in_any_order(head_) && size_ >= kPairsForTwo;
   std::vector<OrderedPool<Order, Made>::Make> makers;
+  makers.reserve(two ? 2 : 1);
   for (int i = 0; i < (two ? 2 : 1); ++i) {
     makers.emplace_back([maker = std::make_shared<PairMaker>(ingredients_)](Order order) {
       return Made{std::move(order.frame), maker->make(order.seen)};

@@ -110,7 +110,6 @@ class SimulatedSource : public slam::StereoSource {
   slam::Pose rectified(const slam::Pose& T_world_left) const;
 
   const sim::Scenario& scenario_;
-  const sim::World& world_;
   const sim::HeadModel& head_;
   std::optional<RawImages> raw_;
   const slam::StereoRig rig_;

@@ -318,8 +318,8 @@ int LoopVerifier::occupied_cells(const Search& search) const {
     const Eigen::Vector3d& uvu = search.pairs[i].uvu_to;
     const int column = static_cast<int>(uvu.x() * kColumns / rig_.width_px);
     const int row = static_cast<int>(uvu.y() * kRows / rig_.height_px);
-    cells.set(
-        static_cast<size_t>(std::clamp(row, 0, kRows - 1) * kColumns + std::clamp(column, 0, kColumns - 1)));
+    const int cell = std::clamp(row, 0, kRows - 1) * kColumns + std::clamp(column, 0, kColumns - 1);
+    cells.set(static_cast<size_t>(cell));
   }
   return static_cast<int>(cells.count());
 }

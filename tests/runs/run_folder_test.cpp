@@ -9,8 +9,6 @@ namespace groundloop::bench {
 namespace {
 
 using nlohmann::json;
-using testing::Each;
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsSupersetOf;
 using testing::SizeIs;
