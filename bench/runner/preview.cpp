@@ -27,15 +27,6 @@ struct Way {
   std::vector<DrawnKidnapping> kidnappings;
 };
 
-/// The kidnappings of a scenario, in order of time.
-std::vector<sim::Fault> kidnappings_of(const sim::Scenario& scenario) {
-  std::vector<sim::Fault> faults = scenario.faults;
-  std::erase_if(faults, [](const sim::Fault& fault) { return !fault.kidnap; });
-  std::stable_sort(faults.begin(), faults.end(),
-                   [](const sim::Fault& a, const sim::Fault& b) { return a.at_s < b.at_s; });
-  return faults;
-}
-
 Way way_of(const sim::Scenario& scenario, const sim::Simulation& simulation) {
   const auto planned = [&](double time_s) { return sim::to_pose2(simulation.planned_T_world_body(time_s)); };
   sim::Pose2 T_world_plan;
@@ -47,7 +38,7 @@ Way way_of(const sim::Scenario& scenario, const sim::Simulation& simulation) {
     path.push_back(plan_pose(composed(T_world_plan, planned(to_s))));
     return path;
   };
-  const std::vector<sim::Fault> kidnappings = kidnappings_of(scenario);
+  const std::vector<sim::Fault> kidnappings = sim::kidnappings_of(scenario.faults);
   const auto end_s = [&](size_t next) {
     return next < kidnappings.size() ? kidnappings[next].at_s : simulation.planned_duration_s();
   };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 namespace groundloop::sim {
@@ -14,12 +15,18 @@ Pose2 carried(const Pose2& T_world_from, const Pose2& T_world_to, const Pose2& T
   return composed(T_world_to, composed(inverse(T_world_from), T_world_pose));
 }
 
+std::vector<Fault> kidnappings_of(const std::vector<Fault>& faults) {
+  std::vector<Fault> kidnappings;
+  std::copy_if(faults.begin(), faults.end(), std::back_inserter(kidnappings),
+               [](const Fault& fault) { return fault.kidnap.has_value(); });
+  std::stable_sort(kidnappings.begin(), kidnappings.end(),
+                   [](const Fault& a, const Fault& b) { return a.at_s < b.at_s; });
+  return kidnappings;
+}
+
 Kidnapping::Kidnapping(const World& world, const std::vector<Fault>& faults) : world_(world) {
-  for (const Fault& fault : faults) {
-    if (fault.kidnap) events_.push_back({std::llround(fault.at_s * 1e9), *fault.kidnap});
-  }
-  std::stable_sort(events_.begin(), events_.end(),
-                   [](const Event& a, const Event& b) { return a.at_ns < b.at_ns; });
+  for (const Fault& fault : kidnappings_of(faults))
+    events_.push_back({std::llround(fault.at_s * 1e9), *fault.kidnap});
   std::reverse(events_.begin(), events_.end());
 }
 

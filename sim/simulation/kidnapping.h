@@ -38,4 +38,7 @@ Pose2 carried(const Pose2& T_world_from, const Pose2& T_world_to, const Pose2& T
 
 Pose2 pose_of(const KidnapFault& kidnap);
 
+/// The kidnappings among the faults, in order of time.
+std::vector<Fault> kidnappings_of(const std::vector<Fault>& faults);
+
 }  // namespace groundloop::sim

@@ -30,16 +30,10 @@ Problem touches(const Scenario& scenario, const std::string& key, int line, cons
 class PlanCarrier {
  public:
   PlanCarrier(const Scenario& scenario, const PlannedPath& path) {
-    std::vector<const Fault*> kidnaps;
-    for (const Fault& fault : scenario.faults) {
-      if (fault.kidnap) kidnaps.push_back(&fault);
-    }
-    std::stable_sort(kidnaps.begin(), kidnaps.end(),
-                     [](const Fault* a, const Fault* b) { return a->at_s < b->at_s; });
-    for (const Fault* fault : kidnaps) {
-      const PlannedState from = path.at(fault->at_s);
+    for (const Fault& fault : kidnappings_of(scenario.faults)) {
+      const PlannedState from = path.at(fault.at_s);
       legs_.push_back(
-          {{from.segment, from.fraction}, composed(pose_of(*fault->kidnap), inverse(from.T_world_body))});
+          {{from.segment, from.fraction}, composed(pose_of(*fault.kidnap), inverse(from.T_world_body))});
     }
   }
 

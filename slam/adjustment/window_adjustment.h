@@ -89,10 +89,11 @@ class WindowAdjustment {
   std::vector<Eigen::Matrix3d> inverse_ll_;  ///< per landmark: H_ll^-1, zero when not determined
   std::vector<Eigen::Vector3d> own_step_;    ///< per landmark: H_ll^-1 g_l
 
-  // Lower triangles of the leading unknowns_ x unknowns_ part; kept at the largest size so far.
+  // The leading unknowns_ x unknowns_ part, of H_ and noise_ the lower triangle; kept at the largest size so
+  // far.
   Eigen::MatrixXd H_;           ///< reduced information, then its Cholesky factor
   Eigen::MatrixXd noise_;       ///< covariance of the reduced gradient
-  Eigen::MatrixXd covariance_;  ///< of all free poses
+  Eigen::MatrixXd covariance_;  ///< of all free poses; before that, the inverse of H_
   Eigen::VectorXd g_, diagonal_, slope_;
 };
 

@@ -54,7 +54,7 @@ bool WindowAdjustment::uncertainty(const AdjustmentProblem& problem, AdjustmentR
   covariance.setIdentity();
   llt.solveInPlace(covariance);
   for (size_t j = 0; j < p_odom_.size(); ++j) {
-    reduce(j, 0);
+    reduce(j, 0);  // once more: the terms of all landmarks would take more room than time
     result.landmark_covariance[j] = landmark_covariance(j);
     add_noise(j);
   }

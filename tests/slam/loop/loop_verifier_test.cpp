@@ -33,6 +33,15 @@ PosePrediction prediction_of(const Pose& T_from_to, double sigma_m, double sigma
   return prediction;
 }
 
+/// A key frame of kHere, and a later one at T_from_to from there.
+struct ComeBack {
+  CurrentView stored, current;
+};
+ComeBack come_back(const Pose& T_from_to) {
+  const PaintedRoom room(1);
+  return {current_view(room.key_frame(10, kHere)), current_view(room.key_frame(200, kHere * T_from_to))};
+}
+
 Vector6d error_of(const Verification& found, const Pose& T_from_to) {
   return se3_log(T_from_to.inverse() * found.link.T_from_to);
 }
@@ -109,10 +118,8 @@ TEST(LoopVerifier, ItsErrorIsWithinItsCovariance) {
 
 /// With 24 landmarks spread over the image, where 30 are needed.
 TEST(LoopVerifier, FewLandmarksWillDoWhereAPlaceThatWasOutOfSightIsExpected) {
-  const PaintedRoom room(1);
   const Pose T_from_to = moved(0.1, 0, 0.1, 0, 2, 0);
-  CurrentView stored = current_view(room.key_frame(10, kHere));
-  const CurrentView current = current_view(room.key_frame(200, kHere * T_from_to));
+  auto [stored, current] = come_back(T_from_to);
   std::vector<Landmark> few;
   const size_t stride = stored.view.landmarks.size() / 24;
   for (size_t i = 0; few.size() < 24; ++i) few.push_back(stored.view.landmarks[i * stride]);
@@ -140,29 +147,25 @@ TEST(LoopVerifier, FewLandmarksWillDoWhereAPlaceThatWasOutOfSightIsExpected) {
 }
 
 TEST(LoopVerifier, LooksForLandmarksThatBothViewsShare) {
-  const PaintedRoom room(1);
   const Pose T_from_to = moved(0, 0, 0, 0, 25, 0);  // half of the stored picture is out of sight
-  const CurrentView stored = current_view(room.key_frame(10, kHere));
-  const CurrentView current = current_view(room.key_frame(200, kHere * T_from_to));
+  const ComeBack views = come_back(T_from_to);
   const auto expected = [&](int landmarks) {
     LoopOptions options;
     options.landmarks = landmarks;
     return make_verifier(options)
-        .verify(stored.view, current, prediction_of(T_from_to, 0.01, 0.1), 1)
+        .verify(views.stored.view, views.current, prediction_of(T_from_to, 0.01, 0.1), 1)
         .expected;
   };
   const int all = expected(5000);
-  ASSERT_LT(all, 0.6 * static_cast<double>(stored.view.landmarks.size()));
+  ASSERT_LT(all, 0.6 * static_cast<double>(views.stored.view.landmarks.size()));
   EXPECT_EQ(expected(static_cast<int>(1.5 * all)), all) << "those out of sight take no room";
   EXPECT_LE(expected(all / 2), all / 2);
   EXPECT_GT(expected(all / 2), all / 4);
 }
 
 TEST(LoopVerifier, AnExpectedPlaceMayBeMeasuredLessPrecisely) {
-  const PaintedRoom room(1);
   const Pose T_from_to = moved(0.1, 0, 0.1, 0, 2, 0);
-  CurrentView stored = current_view(room.key_frame(10, kHere));
-  const CurrentView current = current_view(room.key_frame(200, kHere * T_from_to));
+  auto [stored, current] = come_back(T_from_to);
   const PosePrediction near = prediction_of(T_from_to, 0.01, 0.1);
   const Verification precise = make_verifier().verify(stored.view, current, near, 1);
   ASSERT_TRUE(precise.accepted) << precise.message;
@@ -181,14 +184,12 @@ TEST(LoopVerifier, AnExpectedPlaceMayBeMeasuredLessPrecisely) {
 
 /// Landmarks in the middle of the image alone: whether the camera turned or moved aside is hard to tell.
 TEST(LoopVerifier, WhatFewLandmarksLeaveOpenIsTakenAsPredicted) {
-  const PaintedRoom room(1);
   const Pose T_from_to = moved(0.1, 0, 0.1, 0, 2, 0);
-  CurrentView stored = current_view(room.key_frame(10, kHere));
-  const CurrentView current = current_view(room.key_frame(200, kHere * T_from_to));
-  std::erase_if(stored.view.landmarks, [](const Landmark& landmark) {
+  ComeBack views = come_back(T_from_to);
+  std::erase_if(views.stored.view.landmarks, [](const Landmark& landmark) {
     return std::abs(landmark.uv_px.x() - 320) > 100 || std::abs(landmark.uv_px.y() - 240) > 100;
   });
-  stored.view.was_away = true;
+  views.stored.view.was_away = true;
   LoopOptions options;
   options.min_cells = 1;
   options.predicted_ease = 0.1;
@@ -198,8 +199,8 @@ TEST(LoopVerifier, WhatFewLandmarksLeaveOpenIsTakenAsPredicted) {
   const auto error_with = [&](int min_inliers) {
     LoopOptions with = options;
     with.min_inliers = min_inliers;
-    const Verification found =
-        make_verifier(with).verify(stored.view, current, prediction_of(T_from_to, 0.001, 0.01), 1);
+    const Verification found = make_verifier(with).verify(views.stored.view, views.current,
+                                                          prediction_of(T_from_to, 0.001, 0.01), 1);
     EXPECT_TRUE(found.accepted) << found.message;
     return error_of(found, T_from_to);
   };
@@ -210,10 +211,8 @@ TEST(LoopVerifier, WhatFewLandmarksLeaveOpenIsTakenAsPredicted) {
 }
 
 TEST(LoopVerifier, WhatWasInSightAllTheTimeHasToTellMoreThanOdometry) {
-  const PaintedRoom room(1);
   const Pose T_from_to = moved(0.1, 0, 0.1, 0, 2, 0);
-  CurrentView stored = current_view(room.key_frame(10, kHere));
-  const CurrentView current = current_view(room.key_frame(200, kHere * T_from_to));
+  auto [stored, current] = come_back(T_from_to);
   LoopVerifier verifier = make_verifier();
   const PosePrediction rough = prediction_of(T_from_to, 0.01, 0.1),
                        exact = prediction_of(T_from_to, 1e-6, 1e-5);

@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "slam/stereo/right_lag.h"
-#include "slam/types/counter_random.h"
+#include "tests/slam/features/texture.h"
+#include "tests/slam/types/centred_rig.h"
 
 namespace groundloop::slam {
 namespace {
@@ -29,22 +30,13 @@ struct RowError {
 
 class LagEstimateTest : public testing::Test {
  protected:
-  LagEstimateTest() {
-    rig_.fx_px = rig_.fy_px = 577;
-    rig_.cx_px = rig_.cx_right_px = 319.5;
-    rig_.cy_px = 239.5;
-    rig_.baseline_m = 0.088;
-  }
-
   /// Matches of a pair whose right image is late, at points 1 to 5 m away; every n-th one is false.
   std::vector<LagSight> sights(const Vector6d& moves, double late_s, int false_every = 1000) {
     ++pair_;
     const RightLag known(moves, estimate_.late_s()), true_lag(moves, late_s);
     std::vector<LagSight> sights;
     for (int i = 0; i < kMatches; ++i) {
-      const auto draw = [&](uint64_t what) {
-        return static_cast<double>(random_bits(pair_, static_cast<uint64_t>(i), what) >> 11) * 0x1p-53;
-      };
+      const auto draw = [&](uint64_t what) { return uniform(pair_, static_cast<uint64_t>(i), what); };
       const Eigen::Vector2d at(1.1 * draw(0) - 0.55, 0.8 * draw(1) - 0.4);
       const double z_m = 1 + 4 * draw(2);
       const Eigen::Vector3d p_left(at.x() * z_m, at.y() * z_m, z_m);
@@ -62,7 +54,7 @@ class LagEstimateTest : public testing::Test {
   }
 
   const Vector6d ahead_ = velocity(0.3, 0), turning_ = velocity(0.1, 0.5), at_rest_ = Vector6d::Zero();
-  StereoRig rig_;
+  const StereoRig rig_ = centred_rig(640, 480, 577, 0.088);
   RowError rows_;
   LagEstimate estimate_{StereoOptions{}};  // up to 0.1 s
   uint64_t pair_ = 0;

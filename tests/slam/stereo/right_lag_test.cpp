@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/slam/types/centred_rig.h"
+
 namespace groundloop::slam {
 namespace {
 
@@ -10,13 +12,7 @@ constexpr double kLate_s = 0.05;
 class RightLagTest : public testing::Test {
  protected:
   RightLagTest() {
-    rig_.width_px = 640;
-    rig_.height_px = 480;
-    rig_.fx_px = rig_.fy_px = 577;
-    rig_.cx_px = 319.5;
     rig_.cx_right_px = 318;
-    rig_.cy_px = 239.5;
-    rig_.baseline_m = 0.088;
     velocity_ << 0.02, -0.01, 0.3, 0.03, 0.5, -0.02;
     points_left_ = {{0.4, 0.3, 1.5}, {-0.7, -0.4, 2}, {0.1, 0.2, 0.8}, {1.5, -1, 6}, {0, 0, 3}};
   }
@@ -28,7 +24,7 @@ class RightLagTest : public testing::Test {
     return {now.x(), now.y(), then.z(), then.y()};
   }
 
-  StereoRig rig_;
+  StereoRig rig_ = centred_rig(640, 480, 577, 0.088);
   Vector6d velocity_;
   std::vector<Eigen::Vector3d> points_left_;
 };
