@@ -142,7 +142,7 @@ std::vector<std::string> export_frame(const sim::Scenario& asked, int64_t frame,
   }
   const sim::HeadModel head = sim::carried_head(scenario);
   std::future<sim::RendererInfo> renderer = renderer_from_behind(scenario.render.settings());
-  const sim::World world = sim::World::load(scenario);
+  const sim::World world = sim::World::load(scenario, sim::Looks::kNone);
   SimulatedSource source(scenario, world, head, renderer.get(), std::nullopt);
   if (frame < 0 || frame >= *source.size()) {
     throw InputError(Problem{"", 0, "frame", fmt::format("{}", frame),

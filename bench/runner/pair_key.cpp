@@ -6,6 +6,7 @@
 
 #include "bench/runner/pixel_sources.h"
 #include "bench/runner/provenance.h"
+#include "sim/world/mjcf.h"
 
 namespace groundloop::bench {
 namespace {
@@ -24,6 +25,19 @@ void add_model(sim::KeyBuilder& key, const mjModel& model) {
           sizeof(type) * static_cast<size_t>(model.rows) * static_cast<size_t>(cols));
   MJMODEL_POINTERS
 #undef X
+}
+
+/// What a model without textures lacks: textures, by what their files hold, and what wears them.
+void add_textures(sim::KeyBuilder& key, const sim::MjcfElement& scene) {
+  sim::MjcfElement::walk(scene, [&key](const sim::MjcfElement& element) {
+    const bool is_texture = element.tag == "texture";
+    if (!is_texture && element.find("texture") == nullptr) return;
+    key.add(element.tag);
+    for (const auto& [name, value] : element.attributes) {
+      key.add(name);
+      key.add(is_texture && name.starts_with("file") ? sha256_of_file(value) : value);
+    }
+  });
 }
 
 /// Where everything that can be drawn is.
@@ -99,6 +113,7 @@ sim::KeyBuilder run_key(const sim::World& world, const sim::HeadModel& head, con
   key.add(to_yaml(seen));
   key.add(scenario.seed);
   add_model(key, world.model());
+  add_textures(key, sim::scene_mjcf(scenario));
   return key;
 }
 

@@ -13,8 +13,9 @@
 namespace groundloop::bench {
 
 /// What every pixel of a run depends on: the code that makes images (its sources, compiler, MuJoCo, OpenCV),
-/// the renderer and the instruction set, the compiled model with its textures, the head, how images are made,
-/// the seed.
+/// the renderer and the instruction set, the compiled model, its textures, the head, how images are made, the
+/// seed.
+/// @param world     the scenario's, with or without textures: these are told by their files
 /// @param renderer  that makes the images
 sim::KeyBuilder run_key(const sim::World& world, const sim::HeadModel& head, const sim::Scenario& scenario,
                         const sim::RendererInfo& renderer);

@@ -37,8 +37,8 @@ sim::Renderer& PairMaker::renderer() {
   if (!renderer_) {
     const cv::Size size =
         of_.raw != nullptr ? of_.raw->view().size : cv::Size(of_.head.width_px, of_.head.height_px);
-    renderer_ =
-        std::make_unique<sim::Renderer>(of_.world, size.width, size.height, of_.scenario.render.settings());
+    renderer_ = std::make_unique<sim::Renderer>(of_.dressed.get(), size.width, size.height,
+                                                of_.scenario.render.settings());
   }
   return *renderer_;
 }

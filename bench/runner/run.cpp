@@ -130,7 +130,7 @@ RunOutcome run_scenario(const RunJob& job, const JobControl& control) {
   const slam::SlamOptions options = slam_options(scenario);
   const sim::HeadModel head = sim::carried_head(scenario);
   std::future<sim::RendererInfo> renderer_found = renderer_from_behind(scenario.render.settings());
-  const sim::World world = sim::World::load(scenario);
+  const sim::World world = sim::World::load(scenario, sim::Looks::kNone);
   const sim::RendererInfo renderer = renderer_found.get();
   SimulatedSource source(scenario, world, head, renderer, job.frames, job.cache);
   OutputFolder out(job.folder);

@@ -18,18 +18,14 @@ constexpr double kTouch_m = 0.01;  ///< distance that counts as touching: physic
 /// The ceiling of the mapper: the same points at true poses, so that its errors and the localizer's separate.
 /// Drawn beside the rest of the judgement; the core must outlive it.
 std::future<slam::OccupancyMap> map_at_true_poses(const slam::Pipeline& core, const SimulatedSource& source) {
-  struct TrueLook {
-    slam::Pose T_world_left;
-    slam::SharedObservations observations;
-  };
-  std::vector<TrueLook> looks;
+  std::vector<slam::PosedObservations> looks;
   for (const slam::KeyFrameRecord& k : core.key_frames()) {
     if (k.observations) looks.push_back({source.truth(k.index).T_world_left, k.observations});
   }
   return std::async(std::launch::async,
                     [rig = source.rig(), options = core.options().mapping, looks = std::move(looks)] {
                       slam::Mapper mapper(rig, options);
-                      for (const TrueLook& look : looks) mapper.add(look.T_world_left, *look.observations);
+                      for (const auto& look : looks) mapper.add(look.T_map_left, *look.observations);
                       return mapper.grid().map();
                     });
 }

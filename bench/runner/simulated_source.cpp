@@ -42,9 +42,14 @@ SimulatedSource::SimulatedSource(const sim::Scenario& scenario, const sim::World
       simulation_(world, head, scenario, [this](int64_t exposure) { return pose_of_exposure(exposure); }),
       arrivals_(sim::arrivals(scenario.faults, scenario.seed, simulation_.exposures(), head.period_ns())),
       size_(std::min(frames.value_or(INT64_MAX), static_cast<int64_t>(arrivals_.size()))),
-      ingredients_{world,    head,
-                   scenario, raw_ ? &*raw_ : nullptr,
-                   cache,    cache != nullptr ? run_key(world, head, scenario, renderer) : sim::KeyBuilder()},
+      dressed_(scenario),
+      ingredients_{world,
+                   dressed_,
+                   head,
+                   scenario,
+                   raw_ ? &*raw_ : nullptr,
+                   cache,
+                   cache != nullptr ? run_key(world, head, scenario, renderer) : sim::KeyBuilder()},
       truth_(static_cast<size_t>(size_)) {
   if (size_ > 0) return;
   throw InputError(Problem{scenario.file, scenario.faults.empty() ? 0 : scenario.faults.front().line,

@@ -52,6 +52,7 @@ std::future<sim::RendererInfo> renderer_from_behind(const sim::RenderSettings& s
 /// planned motion told with the next pair covers the whole gap, since the robot kept count of it.
 class SimulatedSource : public slam::StereoSource {
  public:
+  /// @param world   the scenario's; textures are not needed, the source reads them when it renders
   /// @param renderer  what makes the images that are not found in the cache (renderer_from_behind())
   /// @param frames  deliver only the first so many pairs
   /// @param cache   where finished pairs are looked for and left; null: all are rendered. Must outlive the
@@ -117,6 +118,7 @@ class SimulatedSource : public slam::StereoSource {
   sim::Simulation simulation_;
   const std::vector<sim::Arrival> arrivals_;
   const int64_t size_;
+  DressedWorld dressed_;
   const PairIngredients ingredients_;
   std::vector<FrameTruth> truth_;
   int64_t exposed_ = 0;

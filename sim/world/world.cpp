@@ -121,7 +121,7 @@ MjcfElement world_mjcf(const Scenario& scenario) {
   return text ? read_mjcf_text(*text, scenario.file + " (generated world)") : read_mjcf(scenario.world.file);
 }
 
-World World::load(const Scenario& scenario, Looks looks) {
+MjcfElement scene_mjcf(const Scenario& scenario, Looks looks) {
   MjcfElement world = world_mjcf(scenario);
   MjcfElement robot = read_mjcf(scenario.robot.model);
   std::vector<MjcfElement> people;
@@ -131,8 +131,13 @@ World World::load(const Scenario& scenario, Looks looks) {
     strip_textures(robot);
     for (MjcfElement& person : people) strip_textures(person);
   }
+  return compose_mjcf(std::move(world), std::move(robot), std::move(people));
+}
+
+World World::load(const Scenario& scenario, Looks looks) {
+  MjcfElement robot = read_mjcf(scenario.robot.model);
   const std::string body = robot_root_body(robot);
-  ModelPtr model = compile(compose_mjcf(std::move(world), std::move(robot), std::move(people)));
+  ModelPtr model = compile(scene_mjcf(scenario, looks));
   const auto body_id = [&](const std::string& name) {
     return mj_name2id(model.get(), mjOBJ_BODY, name.c_str());
   };

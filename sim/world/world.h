@@ -26,6 +26,11 @@ enum class Looks {
   kNone,  ///< no textures: the same geometry, loaded many times faster
 };
 
+/// The scenario's world, robot and people composed into one MJCF document, in the order in which MuJoCo
+/// numbers them.
+/// @throws InputError naming file, line and element: unreadable XML, missing files, no robot body
+MjcfElement scene_mjcf(const Scenario& scenario, Looks looks = Looks::kAll);
+
 /// A world file and a robot file composed into one MuJoCo model, at the scenario's scale. Constant after
 /// loading.
 /// The robot's root body is the body of the robot file that has a free joint; its frame is `body`

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <opencv2/imgproc.hpp>
 
 #include "slam/features/multiversion.h"
 #include "slam/stereo/disparity.h"
@@ -9,9 +10,10 @@
 namespace groundloop::slam {
 namespace {
 
-constexpr int kLevels = 5;
-constexpr float kScaleFactor = 1.3F;  // between levels; together they cover a factor of 2.9
-constexpr int kEdge_px = 19;          // the patch of a descriptor, turned, stays inside the image
+constexpr int kHalved = 2;  // the finest level: what is seen from elsewhere has lost its details
+constexpr int kLevels = 4;
+constexpr float kScaleFactor = 1.3F;  // between levels; together they cover a factor of 2.2
+constexpr int kEdge_px = 12;
 constexpr int kPatch_px = 31;
 constexpr int kFastThreshold_grey = 10;
 constexpr int kCells = 8;  // a side; a corner-rich part of the image must not take all the places
@@ -26,7 +28,8 @@ Describer::Describer(int keypoints)
 void Describer::describe(const cv::Mat& grey, const cv::Mat& half_disparity, std::vector<Keypoint>& found) {
   found.clear();
   corners_.clear();
-  orb_->detect(grey, corners_);
+  cv::pyrDown(grey, half_);
+  orb_->detect(half_, corners_);
   std::sort(corners_.begin(), corners_.end(), [](const cv::KeyPoint& a, const cv::KeyPoint& b) {
     if (a.response != b.response) return a.response > b.response;
     if (a.pt.y != b.pt.y) return a.pt.y < b.pt.y;
@@ -39,10 +42,11 @@ void Describer::describe(const cv::Mat& grey, const cv::Mat& half_disparity, std
   const int cell_limit = 3 * wanted_ / (kCells * kCells) + 1;
   size_t kept = 0;
   for (const cv::KeyPoint& corner : corners_) {
-    const int column = std::min(static_cast<int>(corner.pt.x) * kCells / grey.cols, kCells - 1);
-    const int row = std::min(static_cast<int>(corner.pt.y) * kCells / grey.rows, kCells - 1);
+    const int column = std::min(static_cast<int>(corner.pt.x) * kCells / half_.cols, kCells - 1);
+    const int row = std::min(static_cast<int>(corner.pt.y) * kCells / half_.rows, kCells - 1);
     if (taken[row * kCells + column] >= cell_limit) continue;
-    const std::optional<float> d = disparity_around(half_disparity, corner.pt.x, corner.pt.y);
+    const std::optional<float> d =
+        disparity_around(half_disparity, kHalved * corner.pt.x, kHalved * corner.pt.y);
     if (!d || *d <= 0) continue;
     ++taken[row * kCells + column];
     corners_[kept] = corner;
@@ -53,10 +57,10 @@ void Describer::describe(const cv::Mat& grey, const cv::Mat& half_disparity, std
   corners_.resize(kept);
   if (corners_.empty()) return;
 
-  orb_->compute(grey, corners_, bits_);
+  orb_->compute(half_, corners_, bits_);
   for (size_t i = 0; i < corners_.size(); ++i) {
     Keypoint keypoint;
-    const cv::Point2f uv = corners_[i].pt;
+    const cv::Point2f uv = kHalved * corners_[i].pt;
     keypoint.uvu_px = {uv.x, uv.y, uv.x - disparity_px[static_cast<size_t>(corners_[i].class_id)]};
     std::memcpy(keypoint.descriptor.data(), bits_.ptr(static_cast<int>(i)), sizeof(Descriptor));
     found.push_back(keypoint);

@@ -24,7 +24,7 @@ class Describer {
   int wanted_;
   cv::Ptr<cv::ORB> orb_;
   std::vector<cv::KeyPoint> corners_;
-  cv::Mat bits_;
+  cv::Mat half_, bits_;
 };
 
 /// Number of bits in which two descriptors differ.

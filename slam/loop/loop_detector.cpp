@@ -94,33 +94,36 @@ void LoopDetector::recognise(const RelativePose& relative_pose, LoopAnswer& answ
 void LoopDetector::choose_candidates(const RelativePose& relative_pose) {
   candidates_.clear();
   const auto views = static_cast<int>(views_.size());
-  index_.query(current_.view.keypoints, views, views, alike_);
-  std::vector<double> alike(views_.size(), 0);
-  const double most = alike_.empty() ? 1 : alike_.front().score;
-  for (const PlaceCandidate& candidate : alike_)
-    alike[static_cast<size_t>(candidate.view)] = candidate.score / most;
-
+  bool all_expected = true;
   for (int view = 0; view < views; ++view) {
     StoredView& stored = views_[static_cast<size_t>(view)];
     const auto prediction = relative_pose(stored.index, current_.view.index);
-    if (prediction && !stored.was_away) {
-      stored.was_away = predicted_overlap(stored, prediction->T_from_to) < kOutOfSight;
-    }
+    const double overlap = prediction ? predicted_overlap(stored, prediction->T_from_to) : 0;
+    if (prediction && overlap < kOutOfSight) stored.was_away = true;
     // What the tracker has just seen is no news, unless it has lost its way since.
     const bool young =
         stored.index > std::min(current_.view.index - options_.min_age_frames, in_sight_since_);
     if (prediction && young) continue;
-    double score = alike[static_cast<size_t>(view)];
-    if (prediction && verifier_.precise_enough(stored, *prediction)) {
-      const double overlap = predicted_overlap(stored, prediction->T_from_to);
-      if (overlap < kLeastOverlap) continue;
-      score += 2 * overlap;
-    }
-    if (score > 0) candidates_.push_back({view, score, prediction});
+    const bool expected = prediction && verifier_.precise_enough(stored, *prediction);
+    if (expected && overlap < kLeastOverlap) continue;
+    all_expected = all_expected && expected;
+    candidates_.push_back({view, expected ? 2 * overlap : 0, prediction});
   }
+  if (!all_expected) add_likeness();
   std::stable_sort(candidates_.begin(), candidates_.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
   keep_the_best(relative_pose);
+}
+
+/// Looks count where it is not known what is in sight.
+void LoopDetector::add_likeness() {
+  const auto views = static_cast<int>(views_.size());
+  index_.query(current_.view.keypoints, views, views, alike_);
+  std::vector<double> alike(views_.size(), 0);
+  for (const PlaceCandidate& candidate : alike_)
+    alike[static_cast<size_t>(candidate.view)] = candidate.score / alike_.front().score;
+  for (Candidate& candidate : candidates_) candidate.score += alike[static_cast<size_t>(candidate.view)];
+  std::erase_if(candidates_, [](const Candidate& candidate) { return !(candidate.score > 0); });
 }
 
 /// The best candidates; where nothing is predicted also the best of another place, as a rival.

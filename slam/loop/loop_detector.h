@@ -72,6 +72,7 @@ class LoopDetector {
 
   void recognise(const RelativePose& relative_pose, LoopAnswer& answer, bool& covered);
   void choose_candidates(const RelativePose& relative_pose);
+  void add_likeness();
   void keep_the_best(const RelativePose& relative_pose);
   double predicted_overlap(const StoredView& stored, const Pose& T_from_to) const;
   bool agree(const LoopLink& a, const LoopLink& b, const RelativePose& relative_pose) const;

@@ -47,7 +47,8 @@ class MapBuilder {
   bool draw(const std::vector<Pose>& T_map_place, size_t looks);
 
   /// Builds the whole grid at the given poses.
-  void complete(const std::vector<Pose>& T_map_place);
+  /// @param by_two  with a second thread; the grid is the same
+  void complete(const std::vector<Pose>& T_map_place, bool by_two);
 
   const FlogGrid& grid() const { return current_.mapper.grid(); }
   /// The looks that are kept, in the order of their key frames.

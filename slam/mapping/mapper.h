@@ -45,6 +45,12 @@ static_assert(sizeof(MapObservation) == 8);
 /// What one key frame saw: written once, then shared by all that draw it.
 using SharedObservations = std::shared_ptr<const std::vector<MapObservation>>;
 
+/// A key frame's observations, and from where they were made.
+struct PosedObservations {
+  Pose T_map_left;
+  SharedObservations observations;
+};
+
 /// Builds the global map from key frames: each one's points make a local map, which is then added to the
 /// global one. Section 2.4 of the paper.
 class Mapper {
@@ -52,14 +58,22 @@ class Mapper {
   Mapper(const StereoRig& rig, const FlogOptions& options);
 
   void add(const Pose& T_map_left, std::span<const MapObservation> observations);
+  /// Adds key frames in their order. A second thread draws every other local map: the grid is the same.
+  void add_by_two(std::span<const PosedObservations> key_frames);
   const FlogGrid& grid() const { return grid_; }
 
  private:
+  /// Where the local map of one key frame is drawn.
+  struct Sheet {
+    LocalMap local;
+    std::vector<MapPoint> points;
+  };
+  void draw(const Pose& T_map_left, std::span<const MapObservation> observations, Sheet& sheet) const;
+
   StereoRig rig_;
   FlogOptions options_;
-  LocalMap local_;
+  Sheet sheet_;
   FlogGrid grid_;
-  std::vector<MapPoint> points_;
 };
 
 }  // namespace groundloop::slam

@@ -59,7 +59,7 @@ BackEndAnswer BackEnd::process(HandedOver handed_over) {
 
 BackEndAnswer BackEnd::finish(const std::vector<OdometryPose>& known_better) {
   places_.refine(known_better);
-  map_.complete(places_.T_map_place());
+  map_.complete(places_.T_map_place(), options_.background.threads);
   return answer();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -36,9 +37,10 @@ class Background {
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
 
-  /// @param enters_at  frame at which collect() takes the result; must not fall from one job to the next
+  /// @param enters_at  frame at which collect() takes the result; those of jobs before do not enter later
   void submit(int64_t enters_at, std::function<Result()> job) {
     std::packaged_task<Result()> task(std::move(job));
+    for (Pending& before : pending_) before.enters_at = std::min(before.enters_at, enters_at);
     pending_.push_back({enters_at, task.get_future()});
     if (!worker_.joinable()) return task();
     {

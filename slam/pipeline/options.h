@@ -42,13 +42,15 @@ struct KeyFrameOptions {
 struct BackgroundOptions {
   bool threads = true;            ///< false: done at once, with the same results at the same frames
   int adjustment_lag_frames = 2;  ///< after a key frame, until its adjustment enters
-  int map_lag_frames = 6;         ///< after a key frame, until what was recognised in it enters
+  int map_lag_frames = 12;        ///< after a key frame, until what was recognised in it enters
+  int astray_lag_frames = 6;      ///< the same after track was lost, until a stored place is recognised
 
   template <class Archive>
   void visit(Archive& a) {
     a("threads", threads);
     a("adjustment_lag_frames", adjustment_lag_frames, {.min = 1, .max = 1000});
     a("map_lag_frames", map_lag_frames, {.min = 1, .max = 1000});
+    a("astray_lag_frames", astray_lag_frames, {.min = 1, .max = 1000});
   }
 };
 

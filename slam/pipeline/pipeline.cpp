@@ -82,9 +82,11 @@ struct Pipeline::Impl {
 
   bool started = false;
   int segment = 0;
-  int64_t seen_ns = 0;    ///< time of the last frame with images of its own
-  int64_t known_ns = 0;   ///< time of the last frame whose pose was seen
-  size_t steps_held = 0;  ///< newest steps that only the plan gave a pose
+  int64_t segment_start = 0;        ///< its first frame
+  bool segment_recognised = false;  ///< tied to what was mapped before
+  int64_t seen_ns = 0;              ///< time of the last frame with images of its own
+  int64_t known_ns = 0;             ///< time of the last frame whose pose was seen
+  size_t steps_held = 0;            ///< newest steps that only the plan gave a pose
   int segment_key_frames = 0;
   Pose T_odom_kf = Pose::Identity();
   Pose T_kf_left = Pose::Identity();        ///< last frame in the last key frame
@@ -280,6 +282,8 @@ void Pipeline::Impl::start_segment(const StereoFrame& frame, StageClock& clock, 
   T_odom_kf = stops.empty() ? rig.T_body_left * T_kf_left : T_odom_kf * T_kf_left;
   T_kf_left.setIdentity();
   if (!first) ++segment;
+  segment_recognised = false;
+  segment_start = frame.index;
   started = true;
   known_ns = frame.stamp_ns;
   result.status = TrackingStatus::kStarted;
@@ -369,8 +373,11 @@ void Pipeline::Impl::give_to_back_end(const StereoFrame& frame, bool starts_segm
     handed_over->sight.in_sight_since = in_sight_since();
   }
   handed_over->look = look(frame, handed_over->observations);
-  mapping.submit(frame.index + options.background.map_lag_frames,
-                 [this, handed_over] { return back.process(std::move(*handed_over)); });
+  // Who does not know where it is, waits for nothing else.
+  const bool astray = segment > 0 && !segment_recognised;
+  mapping.submit(
+      frame.index + (astray ? options.background.astray_lag_frames : options.background.map_lag_frames),
+      [this, handed_over] { return back.process(std::move(*handed_over)); });
 }
 
 /// The features of a key frame for the map and the cloud. Section 2.4.
@@ -417,6 +424,7 @@ void Pipeline::Impl::take_answer(const BackEndAnswer& answer, FrameResult& resul
   T_map_odom_by_tie = answer.T_map_odom;
   for (size_t k = static_cast<size_t>(answer.key_frame); k < stops.size(); ++k) stops[k].tie = answer.tie;
   if (!answer.link) return;
+  segment_recognised = segment_recognised || answer.link->to_index >= segment_start;
   links.push_back(*answer.link);
   result.links.push_back(*answer.link);
 }

@@ -14,7 +14,8 @@ namespace groundloop::slam {
 namespace {
 
 constexpr double kMinDepth_m = 0.01;
-constexpr double kConverged = 1e-8;  // step length in metres and radians
+constexpr double kConverged = 1e-8;   // step length in metres and radians
+constexpr double kNearEnough = 1e-6;  // of reprojection: a thousandth of a pixel, noise leaves hundreds
 constexpr double kLeastPivot =
     1e-9;                         // of the information that is left of an unknown, relative to the largest
 constexpr double kOutlier2 = 25;  // squared misfit in standard deviations that is no noise
@@ -264,7 +265,7 @@ int Registration::refine_reprojection(const std::vector<PointPair>& pairs, Pose&
     const Vector6d step = H.ldlt().solve(gradient);
     if (!step.allFinite()) break;
     T_to_from = se3_exp(step) * T_to_from;
-    if (step.norm() < kConverged) break;
+    if (step.norm() < kNearEnough) break;
   }
   T_to_from = renormalised(T_to_from);
   return iteration;

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <vector>
 
 #include "sim/simulation/carried_head.h"
@@ -108,6 +110,41 @@ TEST_F(SimulatedSourceTest, WhateverChangesAPixelIsRenderedAgain) {
   };
   EXPECT_EQ(rendered(flash(3)), 0);
   EXPECT_EQ(rendered(flash(0.1)), 1);
+}
+
+TEST_F(SimulatedSourceTest, TexturesAreKnownByWhatTheirFilesHold) {
+  const auto folder = std::filesystem::temp_directory_path() / "simulated_source_textures";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "world.xml") << R"(<mujoco>
+    <asset>
+      <texture name="paper" type="2d" file="paper.png"/>
+      <material name="wall" texture="paper"/>
+    </asset>
+    <worldbody>
+      <geom type="plane" size="5 5 1"/>
+      <geom name="wall" type="box" size="0.1 2 1" pos="3 0 1" material="wall"/>
+    </worldbody>
+  </mujoco>)";
+  sim::Scenario scenario = scenario_;
+  scenario.world.file = (folder / "world.xml").string();
+  const auto paint = [&](uint8_t grey) {
+    cv::imwrite((folder / "paper.png").string(), cv::Mat(16, 16, CV_8UC3, cv::Scalar::all(grey)));
+  };
+  sim::PairCache cache(folder / "cache");
+  const auto rendered = [&] {
+    const sim::World world = sim::World::load(scenario, sim::Looks::kNone);
+    SimulatedSource source(scenario, world, head_, renderer_, 1, &cache);
+    pairs(source);
+    return source.rendered();
+  };
+  paint(40);
+  EXPECT_EQ(rendered(), 1);
+  EXPECT_EQ(rendered(), 0);
+  paint(41);
+  EXPECT_EQ(rendered(), 1);
+  paint(40);
+  EXPECT_EQ(rendered(), 0);
 }
 
 /// A head that sets its exposure by what it saw.

@@ -110,8 +110,10 @@ TEST_F(MapBuilderTest, CompletingDrawsAllWhereItIsNow) {
   MapBuilder builder(laboratory_rig(), {}, 8);
   add_all(builder);
   for (Pose& place : places_) place = shifted(0.01, 0.001) * place;
-  builder.complete(places_);
-  EXPECT_EQ(builder.grid().map().value, drawn_at_once(looks_, places_).value);
+  for (const bool by_two : {false, true}) {
+    builder.complete(places_, by_two);
+    EXPECT_EQ(builder.grid().map().value, drawn_at_once(looks_, places_).value);
+  }
 }
 
 TEST_F(MapBuilderTest, APlaceKeepsItsNewestLooks) {
@@ -125,7 +127,7 @@ TEST_F(MapBuilderTest, APlaceKeepsItsNewestLooks) {
   std::vector<int> kept;
   for (const Look& look : builder.looks()) kept.push_back(look.key_frame);
   EXPECT_THAT(kept, ElementsAre(2, 3, 4, 5));
-  builder.complete(places_);
+  builder.complete(places_, true);
   EXPECT_EQ(builder.grid().map().value, drawn_at_once(builder.looks(), places_).value)
       << "what was forgotten is in the map no more";
 }

@@ -33,6 +33,19 @@ TEST_P(BackgroundWork, EntersAtItsFrameAndInOrderHoweverLongItTakes) {
   EXPECT_THAT(entered, ElementsAre(std::pair(4, 0), std::pair(7, 3), std::pair(10, 36)));
 }
 
+TEST_P(BackgroundWork, WhatComesBeforeAnUrgentJobEntersWithItAtTheLatest) {
+  Background<int> background(GetParam());
+  std::vector<std::pair<int64_t, int>> entered;
+  for (int64_t frame = 0; frame < 12; ++frame) {
+    background.collect(frame, [&](int result) { entered.emplace_back(frame, result); });
+    if (frame == 0) background.submit(3, [] { return 0; });
+    if (frame == 1) background.submit(11, [] { return 1; });
+    if (frame == 2) background.submit(5, [] { return 2; });
+    if (frame == 4) background.submit(9, [] { return 4; });
+  }
+  EXPECT_THAT(entered, ElementsAre(std::pair(3, 0), std::pair(5, 1), std::pair(5, 2), std::pair(9, 4)));
+}
+
 TEST_P(BackgroundWork, AnErrorOfAJobLeavesWhereItsResultWouldEnter) {
   Background<int> background(GetParam());
   std::vector<int> entered;
