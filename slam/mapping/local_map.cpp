@@ -13,49 +13,60 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr size_t kStride = 89, kLeap = 55;  ///< no common divisor
 constexpr int kSweptCells = 3;              ///< in a row, after which a ray has nothing to add
 
-/// Steps along a straight line from cell to cell (Amanatides and Woo, Eurographics 1987).
+/// Steps along a straight line from cell to cell (Amanatides and Woo, Eurographics 1987). Which border comes
+/// next is as good as chance, so both are carried on without a branch.
 class GridWalk {
  public:
-  /// @param at         where the walk starts [m]
+  /// @param at         where the walk starts [m]; it has covered no distance there
   /// @param direction  unit vector
-  /// @param rho_m      distance already covered at the start; cell borders are given as distances of the same
-  /// kind
-  GridWalk(const Eigen::Vector2d& at, const Eigen::Vector2d& direction, double rho_m, double cell_m) {
-    for (int axis = 0; axis < 2; ++axis) {
-      cell[axis] = static_cast<int>(std::floor(at[axis] / cell_m));
-      step_[axis] = direction[axis] < 0 ? -1 : 1;
-      const double border_m = (cell[axis] + (direction[axis] < 0 ? 0 : 1)) * cell_m;
+  GridWalk(const Eigen::Vector2d& at, const Eigen::Vector2d& direction, double cell_m)
+      : col(static_cast<int>(std::floor(at.x() / cell_m))),
+        row(static_cast<int>(std::floor(at.y() / cell_m))),
+        col_step_(direction.x() < 0 ? -1 : 1),
+        row_step_(direction.y() < 0 ? -1 : 1) {
+    const auto distance_m = [&](int axis, int cell) {
+      const double border_m = (cell + (direction[axis] < 0 ? 0 : 1)) * cell_m;
       const double speed = std::abs(direction[axis]);
-      next_m_[axis] = speed > 0 ? rho_m + std::abs(border_m - at[axis]) / speed : kNever;
-      width_m_[axis] = speed > 0 ? cell_m / speed : kNever;
-    }
+      return speed > 0 ? std::abs(border_m - at[axis]) / speed : kNever;
+    };
+    const auto width_m = [&](int axis) {
+      const double speed = std::abs(direction[axis]);
+      return speed > 0 ? cell_m / speed : kNever;
+    };
+    next_col_m_ = distance_m(0, col), next_row_m_ = distance_m(1, row);
+    col_width_m_ = width_m(0), row_width_m_ = width_m(1);
   }
 
   /// Distance at which the line leaves the cell.
-  double exit_m() const { return std::min(next_m_[0], next_m_[1]); }
+  double exit_m() const { return std::min(next_col_m_, next_row_m_); }
 
   void advance() {
-    const int axis = next_m_[0] < next_m_[1] ? 0 : 1;
-    cell[axis] += step_[axis];
-    next_m_[axis] += width_m_[axis];
+    const bool to_col = next_col_m_ < next_row_m_;
+    col += to_col ? col_step_ : 0;
+    row += to_col ? 0 : row_step_;
+    next_col_m_ += to_col ? col_width_m_ : 0;
+    next_row_m_ += to_col ? 0 : row_width_m_;
   }
 
-  int cell[2];  ///< col, row
+  int col, row;
 
  private:
-  int step_[2];
-  double next_m_[2], width_m_[2];
+  int col_step_, row_step_;
+  double next_col_m_, next_row_m_, col_width_m_, row_width_m_;
 };
+
+/// Layer that holds a height; the outermost reach on.
+int layer_of(const std::vector<double>& heights_m, double z_m) {
+  int below = 0;
+  for (const double height_m : heights_m) below += height_m <= z_m ? 1 : 0;
+  return std::clamp(below - 1, 0, static_cast<int>(heights_m.size()) - 2);
+}
 
 /// Layer of a height along a ray, followed upward or downward as the ray proceeds.
 class LayerWalk {
  public:
-  LayerWalk(const std::vector<double>& heights_m, double z_head_m, double slope, double rho_m)
-      : heights_m_(heights_m), z_head_m_(z_head_m), slope_(slope) {
-    const double z_m = z_head_m + slope * rho_m;
-    const auto above = std::upper_bound(heights_m.begin(), heights_m.end(), z_m);
-    const int last = static_cast<int>(heights_m.size()) - 2;
-    layer_ = std::clamp(static_cast<int>(above - heights_m.begin()) - 1, 0, last);
+  LayerWalk(const std::vector<double>& heights_m, double z_head_m, double slope)
+      : heights_m_(heights_m), z_head_m_(z_head_m), slope_(slope), layer_(layer_of(heights_m, z_head_m)) {
     find_next_border();
   }
 
@@ -150,7 +161,7 @@ void LocalMap::move_window(int col_min, int row_min, int cols, int rows) {
   }
   col_min_ = col_min, row_min_ = row_min, cols_ = cols, rows_ = rows;
   const size_t size = static_cast<size_t>(cols) * rows * plane_count_;
-  if (size > cells_.size()) cells_.resize(size), key_frame_.resize(size), swept_.resize(size);
+  if (size > cells_.size()) cells_.resize(size), key_frame_.resize(size);
   for (size_t i = 0; i < observed_.size(); ++i) cells_[observed_[i]] = moved_[i];
 }
 
@@ -163,7 +174,7 @@ void LocalMap::trace(const Eigen::Vector3d& head_map, const MapPoint& point) {
   const Eigen::Vector3d to = point.p_map - head_map;
   const double range_m = to.head<2>().norm();
   if (!(range_m > 0) || range_m > options_.max_range_m) return;
-  const double trust = point.weight * 0.5 * (1 - std::tanh(4 * (range_m - rho_v_m_) / rho_v_m_));
+  const double trust = point.weight / (1 + std::exp(8 * (range_m - rho_v_m_) / rho_v_m_));
   if (!(trust > 0)) return;
   const Eigen::Vector2d direction = to.head<2>() / range_m;
   const double slope = to.z() / range_m;
@@ -190,62 +201,73 @@ void LocalMap::trace(const Eigen::Vector3d& head_map, const MapPoint& point) {
 
   // From the end back to the head: rays come together there. Once one runs between a steeper and a flatter
   // one that went the same way through the same layers, the rest of its way has been swept too.
-  const double z_end_m = head_map.z() + slope * end_m;
-  LayerWalk layers(options_.layer_heights_m, z_end_m, -slope, 0);
-  const int layer_of_point =
-      LayerWalk(options_.layer_heights_m, head_map.z(), slope, range_m).layer_at(range_m);
-  GridWalk walk(head_map.head<2>() + end_m * direction, -direction, 0, options_.cell_m);
-  int swept_cells = 0;
-  for (double rho_out_m = end_m; rho_out_m > begin_m && swept_cells < kSweptCells; walk.advance()) {
+  LayerWalk layers(options_.layer_heights_m, head_map.z() + slope * end_m, -slope);
+  GridWalk walk(head_map.head<2>() + end_m * direction, -direction, options_.cell_m);
+  double rho_out_m = end_m, rho_m = end_m;
+  const auto enter = [&] {
     const double rho_in_m = std::max(end_m - walk.exit_m(), begin_m);
-    const double rho_m = 0.5 * (rho_in_m + rho_out_m);
-    rho_out_m = rho_in_m;
-    const size_t cell =
-        (static_cast<size_t>(walk.cell[1] - row_min_) * cols_ + (walk.cell[0] - col_min_)) * plane_count_;
+    rho_m = 0.5 * (rho_in_m + rho_out_m);
+    return rho_in_m;
+  };
+  const auto index = [&] { return index_of(walk.col, walk.row); };
+
+  const int layer_of_point = layer_of(options_.layer_heights_m, point.p_map.z());
+  for (; rho_out_m > begin_m; walk.advance()) {
+    const double rho_in_m = enter();
     const double x = (range_m - rho_m) / margin;
+    if (x > 1) break;
+    rho_out_m = rho_in_m;
     FlogCell evidence = sure;
-    int layer = layers.layer_at(end_m - rho_m);
-    if (x <= 1) {
-      evidence.empty *= static_cast<float>(x > 0 ? x * x : 0);
-      evidence.occupied = static_cast<float>(k_occupied * std::max(0.0, 1 - x * x));
-      if (obstacle) layer = layer_of_point;
-    } else {
-      const FlogCell& known = key_frame_[cell + layer];
-      const bool known_free = known.empty >= sure.empty && known.confidence >= sure.confidence;
-      const bool swept = swept_[cell + layer].covers(static_cast<float>(slope));
-      swept_cells = known_free && swept ? swept_cells + 1 : 0;
-    }
-    strongest(cell + layer, evidence);
-    if (!options_.fuse_layers) strongest(cell + options_.layer_count(), evidence);
+    evidence.empty *= static_cast<float>(x > 0 ? x * x : 0);
+    evidence.occupied = static_cast<float>(k_occupied * std::max(0.0, 1 - x * x));
+    strongest(index(), obstacle ? layer_of_point : layers.layer_at(end_m - rho_m), evidence);
+  }
+  for (int swept_cells = 0; rho_out_m > begin_m && swept_cells < kSweptCells; walk.advance()) {
+    rho_out_m = enter();
+    const int layer = layers.layer_at(end_m - rho_m);
+    KeyFrameCell& known = key_frame_[index() + layer];
+    const bool known_free =
+        known.evidence.empty >= sure.empty && known.evidence.confidence >= sure.confidence;
+    const bool swept = known.covers(static_cast<float>(slope));
+    swept_cells = known_free && swept ? swept_cells + 1 : 0;
+    if (!known_free || !options_.fuse_layers) strongest(index(), layer, sure);
   }
 }
 
-bool LocalMap::Sweep::covers(float slope) {
+size_t LocalMap::index_of(int col, int row) const {
+  return (static_cast<size_t>(row - row_min_) * cols_ + (col - col_min_)) * plane_count_;
+}
+
+bool LocalMap::KeyFrameCell::covers(float slope) {
   if (slope >= low && slope <= high) return true;
   low = std::min(low, slope);
   high = std::max(high, slope);
   return false;
 }
 
-void LocalMap::strongest(size_t index, const FlogCell& evidence) {
-  FlogCell& cell = key_frame_[index];
-  if (cell.confidence == 0) in_key_frame_.push_back(static_cast<uint32_t>(index));
-  cell.empty = std::max(cell.empty, evidence.empty);
-  cell.occupied = std::max(cell.occupied, evidence.occupied);
-  cell.confidence = std::max(cell.confidence, evidence.confidence);
+/// Of a cell's layer, and of the band when that has a plane.
+void LocalMap::strongest(size_t index, int layer, const FlogCell& evidence) {
+  const auto raise = [&](size_t at) {
+    FlogCell& cell = key_frame_[at].evidence;
+    if (cell.confidence == 0) in_key_frame_.push_back(static_cast<uint32_t>(at));
+    cell.empty = std::max(cell.empty, evidence.empty);
+    cell.occupied = std::max(cell.occupied, evidence.occupied);
+    cell.confidence = std::max(cell.confidence, evidence.confidence);
+  };
+  raise(index + layer);
+  if (!options_.fuse_layers) raise(index + options_.layer_count());
 }
 
 void LocalMap::close_key_frame() {
   for (const uint32_t index : in_key_frame_) {
     FlogCell& cell = cells_[index];
-    FlogCell& evidence = key_frame_[index];
+    FlogCell& evidence = key_frame_[index].evidence;
     if (cell.confidence == 0) observed_.push_back(index);
     if (options_.ends_deny_empty) evidence.empty *= 1 - evidence.occupied;
     cell.empty = fuzzy_or(cell.empty, evidence.empty);
     cell.occupied = fuzzy_or(cell.occupied, evidence.occupied);
     cell.confidence = fuzzy_or(cell.confidence, evidence.confidence);
-    evidence = {};
-    swept_[index] = {};
+    key_frame_[index] = {};
   }
   in_key_frame_.clear();
 }

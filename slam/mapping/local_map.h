@@ -57,8 +57,10 @@ class LocalMap {
   struct Place {
     int col, row, plane;
   };
-  /// Rays that crossed a cell as free space: from the flattest to the steepest.
-  struct Sweep {
+  /// What the key frame being added says of a cell, and the rays that crossed it as free space: from the
+  /// flattest to the steepest.
+  struct KeyFrameCell {
+    FlogCell evidence;                                   ///< largest over its rays
     float low = std::numeric_limits<float>::infinity();  ///< slope: rise over horizontal distance
     float high = -std::numeric_limits<float>::infinity();
 
@@ -71,7 +73,8 @@ class LocalMap {
   void move_window(int col_min, int row_min, int cols, int rows);
   Place place_of(uint32_t index) const;
   void trace(const Eigen::Vector3d& head_map, const MapPoint& point);
-  void strongest(size_t index, const FlogCell& evidence);
+  size_t index_of(int col, int row) const;
+  void strongest(size_t index, int layer, const FlogCell& evidence);
   void close_key_frame();
 
   FlogOptions options_;
@@ -81,11 +84,10 @@ class LocalMap {
   /// Window of the lattice of cells, in cells: the arrays below hold [row][col][plane] of it. Both arrays are
   /// zero wherever their list does not point, so an empty window can be moved without touching them.
   int col_min_ = 0, row_min_ = 0, cols_ = 0, rows_ = 0;
-  std::vector<FlogCell> cells_;         ///< the local map
-  std::vector<uint32_t> observed_;      ///< cells of it that are not zero
-  std::vector<FlogCell> key_frame_;     ///< evidence of the key frame being added, largest over its rays
+  std::vector<FlogCell> cells_;     ///< the local map
+  std::vector<uint32_t> observed_;  ///< cells of it that are not zero
+  std::vector<KeyFrameCell> key_frame_;
   std::vector<uint32_t> in_key_frame_;  ///< cells of it that are not zero
-  std::vector<Sweep> swept_;            ///< of those cells
   std::vector<FlogCell> moved_;         ///< used while the window moves
 };
 

@@ -85,11 +85,12 @@ void MapRegistration::add(Look look, int64_t frame, bool starts_segment) {
 
 std::optional<MapSight> MapRegistration::match(PlaceMap& places) {
   constexpr size_t kLooksACall = 4;
+  constexpr double kSoon = 0.75;  // uncertainty, of that from which a match is wanted: time to draw the map
   if (global_.looks().empty()) return std::nullopt;
   const std::vector<Pose>& T_map_place = places.T_map_place();
   const Look& newest = held_.back().look;
   const auto since_first = places.relative(global_.looks().front().key_frame, newest.key_frame);
-  if (!since_first || planar_sigma_m(*since_first) < options_.min_prior_sigma_m / 2) return std::nullopt;
+  if (!since_first || planar_sigma_m(*since_first) < kSoon * options_.min_prior_sigma_m) return std::nullopt;
   const bool drawn = global_.draw(T_map_place, kLooksACall);
   const Pose T_map_left = T_map_place[newest.place] * newest.T_place_left;
   const Look* old = until_next_ > 0 || !drawn ? nullptr : nearest_old_look(T_map_left, T_map_place);
