@@ -42,6 +42,7 @@ LoopAnswer LoopDetector::process(const LoopKeyFrame& key_frame, const RelativePo
   in_sight_since_ = key_frame.in_sight_since;
   current_.view.grey = key_frame.left;
   current_.view.landmarks = key_frame.landmarks;
+  current_.right_lag = key_frame.right_lag;
   current_.half_disparity = key_frame.half_disparity;
   current_.left.build(key_frame.left, pyramid_levels_);
   current_.right.build(key_frame.right, pyramid_levels_);

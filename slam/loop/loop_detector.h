@@ -13,6 +13,7 @@
 #include "slam/loop/loop_verifier.h"
 #include "slam/loop/place_index.h"
 #include "slam/loop/stored_view.h"
+#include "slam/stereo/right_lag.h"
 #include "slam/types/loop_link.h"
 
 namespace groundloop::slam {
@@ -24,6 +25,7 @@ struct LoopKeyFrame {
   /// news. The largest: whatever was seen before is.
   int64_t in_sight_since = std::numeric_limits<int64_t>::max();
   cv::Mat left, right;     ///< rectified, CV_8UC1
+  RightLag right_lag;      ///< of `right`
   cv::Mat half_disparity;  ///< DenseDisparity::half_resolution() of the pair
   std::vector<Landmark> landmarks;
 };

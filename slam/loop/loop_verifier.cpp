@@ -273,10 +273,12 @@ void LoopVerifier::find_landmarks(const StoredView& stored, const CurrentView& c
     ++search.expected;
     AffineState left, right;
     if (!find(current.left, seen.uvu_px.head<2>().cast<float>(), seen.A, left)) continue;
-    const Eigen::Vector2f at_right = Eigen::Vector2d(seen.uvu_px.z(), seen.uvu_px.y()).cast<float>();
+    Eigen::Vector2f at_right = Eigen::Vector2d(seen.uvu_px.z(), seen.uvu_px.y()).cast<float>();
+    at_right += current.right_lag.shift_px(rig_, T_to_from * seen.p_own);
     const Eigen::Matrix2f A_right =
         predicted_shape(rig_, T_to_from, seen.p_own, rig_.baseline_m).cast<float>();
     if (!find(current.right, at_right, A_right, right)) continue;
+    right.uv_px -= current.right_lag.shift_px(rig_, left.uv_px, right.uv_px);
     if (!matcher_.plausible(left.uv_px, right.uv_px)) continue;
     const double sigma_m = seen.landmark->sigma_m;
     const Eigen::Vector3d ray = seen.p_own / seen.p_own.z();

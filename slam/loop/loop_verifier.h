@@ -12,6 +12,7 @@
 #include "slam/loop/stored_view.h"
 #include "slam/registration/registration.h"
 #include "slam/stereo/matcher.h"
+#include "slam/stereo/right_lag.h"
 #include "slam/types/loop_link.h"
 #include "slam/types/pose.h"
 #include "slam/types/stereo_rig.h"
@@ -29,6 +30,7 @@ struct CurrentView {
   StoredView view;         ///< its left image, landmarks and described corners
   ImagePyramid left;       ///< of the same pair
   ImagePyramid right;      ///< of the same pair
+  RightLag right_lag;      ///< of the right image
   cv::Mat half_disparity;  ///< DenseDisparity::half_resolution() of the same pair
 };
 

@@ -23,7 +23,7 @@ BackEnd::BackEnd(const StereoRig& rig, const SlamOptions& options, const Oracle*
       exact_loops_(unless_own_work(oracle, OracleStage::kLoops)),
       exact_stereo_(unless_own_work(oracle, OracleStage::kStereo)),
       detector_(rig, options.loop, options.klt, options.stereo, options.registration, options.seed),
-      dense_points_(options.dense_map),
+      dense_points_(rig, options.dense_map),
       map_(rig, options.mapping, options.key_frame.looks_kept) {
   if (options.map_match.enabled) {
     map_registration_.emplace(rig, options.mapping, options.map_match, options.key_frame.looks_kept);
@@ -100,7 +100,8 @@ void BackEnd::tie(Look& look) const {
 /// Adds points of the dense disparity to what a key frame saw.
 void BackEnd::look_densely(const LoopKeyFrame& sight, std::vector<MapObservation>& observations) {
   if (options_.dense_map.step_px <= 0) return;
-  for (const DensePoint& point : dense_points_.measure(sight.left, sight.right, sight.half_disparity)) {
+  for (const DensePoint& point :
+       dense_points_.measure(sight.left, sight.right, sight.half_disparity, sight.right_lag)) {
     Eigen::Vector3f uvu_px = point.uvu_px;
     if (exact_stereo_ != nullptr) {
       const auto exact_px = exact_stereo_->disparity_px(sight.index, uvu_px.head<2>().cast<double>());

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "slam/stereo/on_time_view.h"
 #include "slam/tracking/perspective.h"
 #include "slam/types/counter_random.h"
 #include "slam/types/stereo_uncertainty.h"
@@ -101,6 +102,7 @@ RightLag FrontEnd::lag_after(const Pose& T_previous_left) const {
 
 /// Learns from the rows of what was tracked how late the right image is, and takes it off.
 void FrontEnd::check_lag(const Pose& T_kf_previous, const Pose& T_kf_left) {
+  if (options_.stereo.max_right_late_s == 0) return;
   const Pose T_left_kf = T_kf_left.inverse();
   lag_sights_.clear();
   for (const Feature& feature : tracker_.features()) {
@@ -228,7 +230,7 @@ void FrontEnd::add_features(const StereoFrame& frame, StageClock& clock) {
   const int wanted = cvRound(share * options_.tracking.max_features) - static_cast<int>(occupied_.size());
   const std::vector<Eigen::Vector2f>& corners = detector_.detect(frame.left, occupied_, wanted, kBorder_px);
   clock.lap(Stage::kDetection);
-  dense_.compute(frame.left, frame.right);
+  look_densely(frame);
   clock.lap(Stage::kDisparity);
   for (const Eigen::Vector2f& corner : corners) {
     Feature* feature = tracker_.add(left_, corner);
@@ -247,6 +249,15 @@ void FrontEnd::add_features(const StereoFrame& frame, StageClock& clock) {
   clock.lap(Stage::kStereo);
 }
 
+void FrontEnd::look_densely(const StereoFrame& frame) {
+  if (lag_.none()) {
+    dense_.compute(frame.left, frame.right);
+  } else {
+    const OnTimeView view(rig_, lag_, kf_median_depth_m_);
+    dense_.compute(frame.left, frame.right, &view);
+  }
+}
+
 bool FrontEnd::match(int64_t frame, Feature& feature) {
   if (replaced(OracleStage::kStereo)) {
     const std::optional<double> disparity = oracle_->disparity_px(frame, feature.left.uv_px.cast<double>());
@@ -255,7 +266,7 @@ bool FrontEnd::match(int64_t frame, Feature& feature) {
     feature.right.uv_px.x() -= static_cast<float>(*disparity);
     return matcher_.plausible(feature.left.uv_px, feature.right.uv_px);
   }
-  const auto right = matcher_.match(tracker_.first_view(feature), feature.left, dense_, right_);
+  const auto right = matcher_.match(tracker_.first_view(feature), feature.left, dense_, right_, lag_);
   if (!right) return false;
   feature.right = *right;
   feature.found_right = true;

@@ -66,6 +66,8 @@ class FrontEnd {
   const ImagePyramid& right() const { return right_; }
   /// Of the last key frame.
   const DenseDisparity& dense() const { return dense_; }
+  /// Of the current frame's right image.
+  const RightLag& right_lag() const { return lag_; }
 
   size_t key_frame_features() const { return kf_features_; }       ///< reconstructed at the last key frame
   double key_frame_depth_m() const { return kf_median_depth_m_; }  ///< median of theirs
@@ -80,6 +82,7 @@ class FrontEnd {
   void triangulate_again();
   void carry_over(const Pose& T_left_kf);
   void add_features(const StereoFrame& frame, StageClock& clock);
+  void look_densely(const StereoFrame& frame);
   bool match(int64_t frame, Feature& feature);
   void note_row(const Feature& feature);
   RightLag lag_after(const Pose& T_previous_left) const;

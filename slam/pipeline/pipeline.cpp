@@ -368,6 +368,7 @@ void Pipeline::Impl::give_to_back_end(const StereoFrame& frame, bool starts_segm
   if (options.loop.enabled || options.dense_map.step_px > 0) {
     handed_over->sight.left = frame.left.clone();
     handed_over->sight.right = frame.right.clone();
+    handed_over->sight.right_lag = front.right_lag();
     handed_over->sight.half_disparity = front.dense().half_resolution().clone();
     handed_over->sight.landmarks = landmarks();
     handed_over->sight.in_sight_since = in_sight_since();

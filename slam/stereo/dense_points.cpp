@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "slam/features/multiversion.h"
+#include "slam/stereo/on_time_view.h"
 
 namespace groundloop::slam {
 namespace {
@@ -78,15 +79,25 @@ Difference compare(const Window& window, const uint8_t* first, size_t stride, fl
   return {sum_of(sum), sum_of(squares), sum_of(times_slope)};
 }
 
+/// Right image, or as much of it as is there.
+struct RightPart {
+  const cv::Mat& grey;
+  Eigen::Vector2i first;  ///< its first pixel
+};
+
 struct Refined {
   DensePoint point;
   float misfit_grey = 0;
 };
 
-std::optional<Refined> refine(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3f& rough_uvu_px,
-                              const DenseMapOptions& options) {
-  const int u = static_cast<int>(rough_uvu_px.x()) - kCols / 2 + 1;
-  const int v = static_cast<int>(rough_uvu_px.y()) - kRows / 2 + 1;
+/// First pixel of the left image's window about a rough point.
+Eigen::Vector2i window_at(const Eigen::Vector3f& uvu_px) {
+  return {static_cast<int>(uvu_px.x()) - kCols / 2 + 1, static_cast<int>(uvu_px.y()) - kRows / 2 + 1};
+}
+
+std::optional<Refined> refine(const cv::Mat& left, const RightPart& right,
+                              const Eigen::Vector3f& rough_uvu_px, const DenseMapOptions& options) {
+  const int u = window_at(rough_uvu_px).x(), v = window_at(rough_uvu_px).y();
   if (u < 1 || v < 0 || u + kCols >= left.cols || v + kRows > left.rows) return std::nullopt;
   const auto max_sigma_px = static_cast<float>(options.max_sigma_px);
   const auto max_correction_px = static_cast<float>(options.max_correction_px);
@@ -97,12 +108,13 @@ std::optional<Refined> refine(const cv::Mat& left, const cv::Mat& right, const E
 
   const float rough_px = rough_uvu_px.x() - rough_uvu_px.z();
   float disparity_px = rough_px;
+  const uint8_t* row = right.grey.ptr<uint8_t>(v - right.first.y());
   for (int i = 0; i < kIterations; ++i) {
     const float u_right = static_cast<float>(u) - disparity_px;
     const float whole = std::floor(u_right);
-    if (whole < 0 || static_cast<int>(whole) + kCols >= right.cols) return std::nullopt;
-    const Difference e =
-        compare(window, right.ptr<uint8_t>(v) + static_cast<int>(whole), right.step, u_right - whole);
+    const int column = static_cast<int>(whole) - right.first.x();
+    if (column < 0 || column + kCols >= right.grey.cols) return std::nullopt;
+    const Difference e = compare(window, row + column, right.grey.step, u_right - whole);
     const float step_px = (e.times_slope - window.slopes * e.sum / kPixels) / texture;
     disparity_px -= std::clamp(step_px, -1.0F, 1.0F);
     if (std::abs(disparity_px - rough_px) > max_correction_px) return std::nullopt;
@@ -123,22 +135,55 @@ std::optional<Refined> refine(const cv::Mat& left, const cv::Mat& right, const E
   return std::nullopt;
 }
 
+/// The same with a late right image.
+/// @param view    at the point's rough depth
+/// @param around  for its surroundings there
+std::optional<Refined> refine_late(const cv::Mat& left, const cv::Mat& late, const OnTimeView& view,
+                                   const Eigen::Vector3f& rough_uvu_px, const DenseMapOptions& options,
+                                   cv::Mat& around) {
+  const int room = (around.cols - kCols) / 2;
+  const float rough_px = rough_uvu_px.x() - rough_uvu_px.z();
+  const Eigen::Vector2i window = window_at(rough_uvu_px);
+  const Eigen::Vector2i first(window.x() - static_cast<int>(std::ceil(rough_px)) - room, window.y());
+  if (!view.draw(late, first, around)) return std::nullopt;
+  std::optional<Refined> refined = refine(left, {around, first}, rough_uvu_px, options);
+  if (refined) {
+    Eigen::Vector3f& uvu_px = refined->point.uvu_px;
+    uvu_px.z() = uvu_px.x() - static_cast<float>(view.disparity_px(uvu_px.x(), uvu_px.z()));
+  }
+  return refined;
+}
+
 }  // namespace
 
+DensePoints::DensePoints(const StereoRig& rig, const DenseMapOptions& options)
+    : rig_(rig), options_(options) {
+  const int room = static_cast<int>(std::ceil(options.max_correction_px)) + 1;
+  around_.create(kRows, kCols + 2 * room + 1, CV_8UC1);
+}
+
 const std::vector<DensePoint>& DensePoints::measure(const cv::Mat& left, const cv::Mat& right,
-                                                    const cv::Mat& rough) {
+                                                    const cv::Mat& rough, const RightLag& lag) {
   rough_uvu_px_.clear(), points_.clear(), misfit_grey_.clear();
   if (options_.step_px <= 0) return points_;
   sample_disparity(rough, options_.step_px, turn_++, rough_uvu_px_);
   for (const Eigen::Vector3f& uvu_px : rough_uvu_px_) {
-    const std::optional<Refined> refined = refine(left, right, uvu_px, options_);
+    std::optional<Refined> refined;
+    if (lag.none()) {
+      refined = refine(left, {right, {0, 0}}, uvu_px, options_);
+    } else if (const auto p_left = rig_.triangulate(uvu_px.cast<double>())) {
+      refined = refine_late(left, right, OnTimeView(rig_, lag, p_left->z()), uvu_px, options_, around_);
+    }
     if (!refined) continue;
     points_.push_back(refined->point);
     misfit_grey_.push_back(refined->misfit_grey);
   }
-  if (points_.empty()) return points_;
+  if (!points_.empty()) forget_misfits();
+  return points_;
+}
 
-  // Two surfaces in one window, or a wrong match, disagree by more than the noise of this pair.
+/// Two surfaces in one window, or a wrong match, disagree by more than the noise of this pair.
+void DensePoints::forget_misfits() {
   sorted_misfit_grey_ = misfit_grey_;
   const auto middle = sorted_misfit_grey_.begin() + static_cast<std::ptrdiff_t>(points_.size() / 2);
   std::nth_element(sorted_misfit_grey_.begin(), middle, sorted_misfit_grey_.end());
@@ -148,7 +193,6 @@ const std::vector<DensePoint>& DensePoints::measure(const cv::Mat& left, const c
     if (misfit_grey_[i] <= limit) points_[kept++] = points_[i];
   }
   points_.resize(kept);
-  return points_;
 }
 
 }  // namespace groundloop::slam

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "slam/stereo/disparity.h"
+#include "slam/stereo/right_lag.h"
 #include "slam/types/config.h"
+#include "slam/types/stereo_rig.h"
 
 namespace groundloop::slam {
 
@@ -45,23 +47,32 @@ struct DensePoint {
 /// The noise of a pixel is taken from what the two windows disagree by, and gives each point its standard
 /// deviation, beside a tenth of a pixel that no texture takes away; the part of g^2 that is noise itself is
 /// subtracted before.
+///
+/// Of a late right image, the surroundings of each point are drawn as they would have been in time at its
+/// rough depth; there it is measured.
 class DensePoints {
  public:
-  explicit DensePoints(const DenseMapOptions& options) : options_(options) {}
+  DensePoints(const StereoRig& rig, const DenseMapOptions& options);
 
   /// @param left,right  the pair that `rough` was computed from, CV_8UC1
   /// @param rough       half-resolution map, see DenseDisparity::half_resolution()
+  /// @param lag         of the right image
   /// Successive calls take turns with the points of different grids, so that a surface seen again is measured
   /// at other places than before.
   /// @return points, row by row; valid until the next call
-  const std::vector<DensePoint>& measure(const cv::Mat& left, const cv::Mat& right, const cv::Mat& rough);
+  const std::vector<DensePoint>& measure(const cv::Mat& left, const cv::Mat& right, const cv::Mat& rough,
+                                         const RightLag& lag = {});
 
  private:
+  void forget_misfits();
+
+  StereoRig rig_;
   DenseMapOptions options_;
   int64_t turn_ = 0;
   std::vector<Eigen::Vector3f> rough_uvu_px_;
   std::vector<DensePoint> points_;
   std::vector<float> misfit_grey_, sorted_misfit_grey_;
+  cv::Mat around_;  ///< one point, as it would have been in time
 };
 
 }  // namespace groundloop::slam

@@ -1,14 +1,35 @@
 #include "slam/stereo/disparity.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
+
+#include "slam/stereo/on_time_view.h"
 
 namespace groundloop::slam {
 
 namespace {
 
 constexpr int kFixedPoint = 16;  // of OpenCV's disparity maps
+constexpr int16_t kUnknown = -kFixedPoint;
+
+/// A homography of full-resolution pixels as one of half-resolution pixels.
+Eigen::Matrix3d halved(const Eigen::Matrix3d& full) {
+  Eigen::Matrix3d full_of_half;
+  full_of_half << 2, 0, 0.5, 0, 2, 0.5, 0, 0, 1;
+  return full_of_half.inverse() * full * full_of_half;
+}
+
+/// The half-resolution right image as it would have been in time.
+void draw_in_time(const cv::Mat& half_late, const OnTimeView& view, cv::Mat& half_view) {
+  const Eigen::Matrix3d late_of_view = halved(view.late_of_view());
+  cv::Matx33d by_cv;
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(by_cv.val) = late_of_view;
+  cv::warpPerspective(half_late, half_view, by_cv, half_late.size(), cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
+                      cv::BORDER_REPLICATE);
+}
 
 }  // namespace
 
@@ -20,9 +41,13 @@ DenseDisparity::DenseDisparity(const DisparityOptions& options)
   matcher_->setSpeckleWindowSize(0);
 }
 
-void DenseDisparity::compute(const cv::Mat& left, const cv::Mat& right) {
+void DenseDisparity::compute(const cv::Mat& left, const cv::Mat& right, const OnTimeView* view) {
   cv::resize(left, half_left_, cv::Size(left.cols / 2, left.rows / 2), 0, 0, cv::INTER_AREA);
   cv::resize(right, half_right_, half_left_.size(), 0, 0, cv::INTER_AREA);
+  if (view != nullptr) {
+    draw_in_time(half_right_, *view, half_view_);
+    cv::swap(half_right_, half_view_);
+  }
   // The matcher leaves out the columns that it cannot search over the full width; a border gives it the room.
   const int border = matcher_->getNumDisparities();
   cv::copyMakeBorder(half_left_, wide_left_, 0, 0, border, 0, cv::BORDER_REPLICATE);
@@ -30,6 +55,7 @@ void DenseDisparity::compute(const cv::Mat& left, const cv::Mat& right) {
   matcher_->compute(wide_left_, wide_right_, wide_disparity_);
   wide_disparity_(cv::Rect(border, 0, half_left_.cols, half_left_.rows)).copyTo(disparity_);
   forget_matches_outside();
+  if (view != nullptr) bring_in_time(*view);
 }
 
 void DenseDisparity::forget_matches_outside() {
@@ -37,7 +63,27 @@ void DenseDisparity::forget_matches_outside() {
   for (int v = 0; v < disparity_.rows; ++v) {
     auto* values = disparity_.ptr<int16_t>(v);
     for (int u = 0; u < std::min(border, disparity_.cols); ++u) {
-      if (values[u] > u * kFixedPoint) values[u] = -kFixedPoint;
+      if (values[u] > u * kFixedPoint) values[u] = kUnknown;
+    }
+  }
+}
+
+/// What the matches with the view of a late image are in a pair taken together; those with what the late
+/// image does not show are forgotten.
+void DenseDisparity::bring_in_time(const OnTimeView& view) {
+  const Eigen::Matrix3d late_of_view = halved(view.late_of_view());
+  const auto inside = [this](double u, double v) {
+    return u >= 0 && v >= 0 && u <= disparity_.cols - 1 && v <= disparity_.rows - 1;
+  };
+  for (int v = 0; v < disparity_.rows; ++v) {
+    auto* values = disparity_.ptr<int16_t>(v);
+    for (int u = 0; u < disparity_.cols; ++u) {
+      if (values[u] < 0) continue;
+      const double u_view = u - values[u] / static_cast<double>(kFixedPoint);
+      const Eigen::Vector3d late = late_of_view * Eigen::Vector3d(u_view, v, 1);
+      const double in_time_px = view.disparity_px(2 * u + 0.5, 2 * u_view + 0.5);
+      const bool known = inside(late.x() / late.z(), late.y() / late.z()) && in_time_px > 0;
+      values[u] = known ? cv::saturate_cast<int16_t>(in_time_px / 2 * kFixedPoint) : kUnknown;
     }
   }
 }

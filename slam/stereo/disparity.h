@@ -11,6 +11,8 @@
 
 namespace groundloop::slam {
 
+class OnTimeView;
+
 /// Options of the dense disparity map. YAML: slam.disparity
 struct DisparityOptions {
   int max_disparity_px = 128;   ///< search width at full resolution
@@ -48,7 +50,8 @@ class DenseDisparity {
   explicit DenseDisparity(const DisparityOptions& options);
 
   /// @param left,right rectified, CV_8UC1
-  void compute(const cv::Mat& left, const cv::Mat& right);
+  /// @param view  of a late right image; the map is then that of a pair taken together
+  void compute(const cv::Mat& left, const cv::Mat& right, const OnTimeView* view = nullptr);
 
   /// Half-resolution map, CV_16SC1: disparity in half-resolution px times 16; negative where unknown.
   const cv::Mat& half_resolution() const { return disparity_; }
@@ -60,9 +63,10 @@ class DenseDisparity {
 
  private:
   void forget_matches_outside();
+  void bring_in_time(const OnTimeView& view);
 
   cv::Ptr<cv::StereoBM> matcher_;
-  cv::Mat half_left_, half_right_, wide_left_, wide_right_, wide_disparity_, disparity_;
+  cv::Mat half_left_, half_right_, half_view_, wide_left_, wide_right_, wide_disparity_, disparity_;
 };
 
 }  // namespace groundloop::slam

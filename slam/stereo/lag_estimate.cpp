@@ -12,9 +12,10 @@ constexpr double kMostAgree = 0.5;   // mean weight of a pair that is to be beli
 constexpr double kRow_px = 0.1;      // least standard deviation of a row difference
 constexpr double kWide_px = 0.3;     // differences farther off lose weight
 constexpr double kPlace_px = 0.3;    // what a calibration is off by in the rows, at the direction 1
+constexpr double kTurn_px = 0.1;     // what it is turned by more than a pair before
 constexpr double kAnyLag = 1e-10;    // information on the lag beforehand: none
 constexpr double kLikeness = 0.01;   // correlation of the errors of two matches
-constexpr int kRounds = 5;           // of reweighting
+constexpr int kRounds = 2;           // of reweighting
 constexpr double kTold_s = 0.01;     // a pair that tells less has too little flow
 constexpr double kSigmas = 5;        // beyond chance
 constexpr double kLeast_s = 0.002;   // less does no harm
@@ -24,18 +25,22 @@ double squared(double x) { return x * x; }
 
 }  // namespace
 
-/// Reweighted least squares with row difference = a + b x + c y + (lag - known lag) flow.
+/// Reweighted least squares with
+/// row difference = a + b x + c y + (lag - known lag) flow + aside x y + up y y.
 std::optional<LagEstimate::OfPair> LagEstimate::fit(const std::vector<LagSight>& sights) const {
-  const double place = squared(kRow_px / kPlace_px);
-  Eigen::Vector4d fitted = Eigen::Vector4d::Zero();
-  Eigen::Matrix4d H;
+  const double place = squared(kRow_px / kPlace_px), turn = squared(kRow_px / kTurn_px);
+  const Vector6d known{place, place, place, kAnyLag, turn, turn};
+  const Vector6d before{0, 0, 0, 0, turned_px_.x(), turned_px_.y()};
+  Vector6d fitted = before;
+  Matrix6d H;
   double weights = 0, variance_px2 = 0;
   for (int round = 0; round < kRounds; ++round) {
-    H = Eigen::Vector4d(place, place, place, kAnyLag).asDiagonal();
-    Eigen::Vector4d b = Eigen::Vector4d::Zero();
+    H = known.asDiagonal();
+    Vector6d b = known.cwiseProduct(before);
     weights = variance_px2 = 0;
     for (const LagSight& sight : sights) {
-      const Eigen::Vector4d J(1, sight.at.x(), sight.at.y(), sight.row_flow_px_per_s);
+      const double x = sight.at.x(), y = sight.at.y();
+      const Vector6d J{1, x, y, sight.row_flow_px_per_s, x * y, y * y};
       const double off_px = sight.row_difference_px - J.dot(fitted);
       const double weight = 1 / (1 + squared(off_px / kWide_px));
       H.noalias() += (weight * J) * J.transpose();
@@ -49,13 +54,15 @@ std::optional<LagEstimate::OfPair> LagEstimate::fit(const std::vector<LagSight>&
   if (weights < kMostAgree * matches) return std::nullopt;
   variance_px2 = std::max(variance_px2 / weights, squared(kRow_px));
   const double noise_s2 = variance_px2 * H.inverse()(3, 3);
-  return OfPair{late_s() + fitted(3), noise_s2, kLikeness * matches * noise_s2};
+  return OfPair{late_s() + fitted(3), noise_s2, kLikeness * matches * noise_s2, fitted.tail<2>()};
 }
 
 void LagEstimate::observe(const std::vector<LagSight>& sights) {
   if (options_.max_right_late_s == 0 || sights.size() < kFewest) return;
   const std::optional<OfPair> pair = fit(sights);
-  if (!pair || !(pair->noise_s2 + pair->calibration_s2 < squared(kTold_s))) return;
+  if (!pair) return;
+  turned_px_ = pair->turned_px;
+  if (!(pair->noise_s2 + pair->calibration_s2 < squared(kTold_s))) return;
   take(*pair);
   const double sigma_s = std::sqrt(noise_s2_ + calibration_s2_);
   const double least_s = std::max(kLeast_s, kSigmas * sigma_s) * (claimed_ ? 0.5 : 1);

@@ -20,8 +20,9 @@ struct LagSight {
 /// has carried each match off its row by its own speed times the lag. What a calibration is off by moves rows
 /// by their place in the image, whatever the motion; that much is fitted beside it and left alone.
 ///
-/// Columns say nothing: a pair alone cannot tell flow along them from other distances. A camera that was
-/// knocked aside looks like a late one while the head turns steadily, in rows and in columns.
+/// Columns say nothing: a pair alone cannot tell flow along them from other distances. Nor can a pair tell a
+/// camera that was knocked aside from a late one while the head turns on the spot. But a turned camera stays
+/// so: how it is turned is carried on from pair to pair, learnt wherever a pair can tell.
 class LagEstimate {
  public:
   explicit LagEstimate(const StereoOptions& options) : options_(options) {}
@@ -38,6 +39,7 @@ class LagEstimate {
     double late_s;
     double noise_s2;        ///< variance from noise of the matches, another one in each pair
     double calibration_s2;  ///< from errors that matches share, and pairs too
+    Eigen::Vector2d turned_px;
   };
   std::optional<OfPair> fit(const std::vector<LagSight>& sights) const;
   void take(const OfPair& pair);
@@ -46,6 +48,9 @@ class LagEstimate {
   double late_s_ = 0;
   double noise_s2_ = 1;  ///< variance of late_s_, as OfPair has it
   double calibration_s2_ = 0;
+  /// By what the right camera is turned (aside, up) [px in the image's middle]: rows are off by that times
+  /// (x y, y y).
+  Eigen::Vector2d turned_px_ = Eigen::Vector2d::Zero();
   bool claimed_ = false;
 };
 

@@ -5,13 +5,16 @@
 namespace groundloop::slam {
 
 std::optional<AffineState> StereoMatcher::match(const PatchTemplate& patch, const AffineState& left,
-                                                const DenseDisparity& dense,
-                                                const ImagePyramid& right) const {
+                                                const DenseDisparity& dense, const ImagePyramid& right,
+                                                const RightLag& lag) const {
   const std::optional<float> disparity_px = dense.around(left.uv_px.x(), left.uv_px.y());
   if (!disparity_px) return std::nullopt;
 
   AffineState state = left;
   state.uv_px.x() -= *disparity_px;
+  if (const auto p_left = rig_.triangulate({left.uv_px.x(), left.uv_px.y(), state.uv_px.x()})) {
+    state.uv_px += lag.shift_px(rig_, *p_left);
+  }
   const Eigen::Vector2f predicted_px = state.uv_px;
   if (track_affine(patch, right, klt_, 1, state) != KltStatus::kTracked) return std::nullopt;
   if (std::abs(state.uv_px.x() - predicted_px.x()) > options_.max_prediction_error_px) return std::nullopt;

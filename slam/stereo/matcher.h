@@ -4,6 +4,7 @@
 
 #include "slam/features/affine_klt.h"
 #include "slam/stereo/disparity.h"
+#include "slam/stereo/right_lag.h"
 #include "slam/types/config.h"
 #include "slam/types/stereo_rig.h"
 
@@ -35,10 +36,14 @@ class StereoMatcher {
       : rig_(rig), options_(options), klt_(klt) {}
 
   /// @param left  where the feature is in the left image
-  /// @return where it is in the right one, which plausible() has to check; none when the dense map knows
+  /// @param dense  of a pair taken together
+  /// @param lag    of the right image
+  /// @return where it is in the right one, lag included, which plausible() has to check; none when the dense
+  /// map knows
   ///         nothing of it, or something else
   std::optional<AffineState> match(const PatchTemplate& patch, const AffineState& left,
-                                   const DenseDisparity& dense, const ImagePyramid& right) const;
+                                   const DenseDisparity& dense, const ImagePyramid& right,
+                                   const RightLag& lag = {}) const;
 
   /// Whether two positions can be the same point: rows agree, disparity is positive.
   bool plausible(const Eigen::Vector2f& left_px, const Eigen::Vector2f& right_px) const;

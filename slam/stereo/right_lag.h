@@ -19,6 +19,9 @@ class RightLag {
 
   bool none() const { return late_s_ == 0; }
 
+  /// Left camera as the left image is taken, in that of the right image's time.
+  const Pose& T_late_left() const { return T_late_left_; }
+
   /// How fast a point that stands still moves down the right image as that is taken [px/s].
   /// @param p_left  in the left camera when the left image was taken [m]; zero where it is not in front
   double row_flow_px_per_s(const StereoRig& rig, const Eigen::Vector3d& p_left) const;
@@ -35,8 +38,7 @@ class RightLag {
  private:
   Vector6d velocity_ = Vector6d::Zero();
   double late_s_ = 0;
-  Pose T_late_left_ =
-      Pose::Identity();  ///< left camera as the left image is taken, in that of the right's time
+  Pose T_late_left_ = Pose::Identity();
 };
 
 }  // namespace groundloop::slam

@@ -77,6 +77,29 @@ TEST_P(Revisits, AreFoundAndMeasured) {
   EXPECT_LT(error_of(again, GetParam().T_from_to).head<3>().norm(), 0.010);
 }
 
+TEST(LoopVerifier, ALateRightImageMeasuresAsOneInTime) {
+  const PaintedRoom room(1);
+  Vector6d velocity;
+  velocity << 0.02, -0.01, 0.3, 0.03, 0.5, -0.02;
+  const RightLag lag(velocity, 0.05);
+  const CurrentView stored = current_view(room.key_frame(10, kHere));
+  const Pose T_from_to = moved(0.15, 0, 0.2, 0, 4, 0), T_room_left = kHere * T_from_to;
+  const CurrentView in_time = current_view(room.key_frame(200, T_room_left));
+  CurrentView late = in_time;
+  late.right.build(room.key_frame(200, T_room_left * lag.T_late_left().inverse()).right, KltOptions{}.levels);
+  LoopVerifier verifier = make_verifier();
+  const auto verify = [&](const CurrentView& current) {
+    return verifier.verify(stored.view, current, prediction_of(T_from_to, 0.02, 0.3), 1);
+  };
+  EXPECT_FALSE(verify(late).accepted);
+  late.right_lag = lag;
+  const Verification best = verify(in_time), found = verify(late);
+  ASSERT_TRUE(found.accepted) << found.message;
+  EXPECT_GT(found.link.inliers, 0.9 * best.link.inliers);
+  EXPECT_LT(error_of(found, T_from_to).head<3>().norm(), 0.006);
+  EXPECT_LT(error_of(found, T_from_to).tail<3>().norm(), 0.2 * kDegree);
+}
+
 INSTANTIATE_TEST_SUITE_P(Loop, Revisits,
                          ::testing::Values(Revisit{"SamePlace", Pose::Identity()},
                                            Revisit{"HalfAMetreAside", moved(0.5, 0, 0, 0, -8, 0)},

@@ -2,9 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "slam/pipeline/state_hash.h"
+#include "slam/stereo/disparity.h"
 #include "tests/slam/pipeline/box_room.h"
 
 namespace groundloop::slam {
@@ -107,6 +109,19 @@ TEST_P(Preset, ItsPointsLieOnTheWalls) {
   EXPECT_EQ(map.at_point(-1.5, 0), OccupancyMap::kUnknown);  // behind the robot
   EXPECT_EQ(core.layers().size(), static_cast<size_t>(core.options().mapping.layer_count()));
   EXPECT_EQ(core.last_disparity().size(), cv::Size(160, 120));
+}
+
+/// Of two half-resolution disparity maps, where both know one [full-resolution px].
+double median_difference_px(const cv::Mat& a, const cv::Mat& b) {
+  std::vector<int> off;
+  for (int v = 0; v < a.rows; ++v) {
+    for (int u = 0; u < a.cols; ++u) {
+      const int one = a.at<int16_t>(v, u), other = b.at<int16_t>(v, u);
+      if (one >= 0 && other >= 0) off.push_back(std::abs(one - other));
+    }
+  }
+  std::nth_element(off.begin(), off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2), off.end());
+  return off[off.size() / 2] / 8.0;
 }
 
 class PipelineTest : public testing::Test {
@@ -272,6 +287,25 @@ TEST_F(PipelineTest, ALateRightImageIsFoundAndWhatHasFlowedByThenTakenOff) {
   }
   EXPECT_LT(worst_m, 0.01);
   EXPECT_GT(worst_of_paper_m, 3 * worst_m) << "which is left as it was published";
+}
+
+TEST_F(PipelineTest, TheDenseMapOfALateRightImageIsThatOfAPairTakenTogether) {
+  constexpr double kLate_steps = 0.3;
+  Pipeline core(room_.rig(), {});
+  DenseDisparity in_time({}), as_they_came({});
+  int compared = 0;
+  for (int64_t i = 0; i < 14; ++i) {
+    const auto step = static_cast<double>(i);
+    StereoFrame frame = room_.frame(i);
+    in_time.compute(frame.left, frame.right);
+    if (i >= 4) frame.right = room_.frame(i, step + kLate_steps, step).right;
+    as_they_came.compute(frame.left, frame.right);
+    if (!core.process(frame).is_key_frame || i < 4) continue;
+    ++compared;
+    EXPECT_LT(median_difference_px(core.last_disparity(), in_time.half_resolution()), 0.15) << i;
+    EXPECT_GT(median_difference_px(as_they_came.half_resolution(), in_time.half_resolution()), 0.6) << i;
+  }
+  EXPECT_GT(compared, 1);
 }
 
 TEST_F(PipelineTest, WhatIsBlownOutIsNotMissed) {

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
+#include "slam/stereo/on_time_view.h"
 #include "tests/slam/features/texture.h"
+#include "tests/slam/stereo/late_pair.h"
 
 namespace groundloop::slam {
 namespace {
@@ -42,7 +44,7 @@ Pair pair_of(const Plane& plane, double noise, double offset = 0) {
 std::vector<DensePoint> measure(const Pair& pair, const DenseMapOptions& options = {}) {
   DenseDisparity rough({});
   rough.compute(pair.left, pair.right);
-  DensePoints points(options);
+  DensePoints points(centred_rig(kSize.width, kSize.height, 400, 0.1), options);
   return points.measure(pair.left, pair.right, rough.half_resolution());
 }
 
@@ -147,6 +149,32 @@ TEST(DensePoints, StepSaysHowMany) {
   options.step_px = 4;
   const auto four = static_cast<double>(measure(pair, options).size());
   EXPECT_NEAR(four / static_cast<double>(eight), 4, 0.4);
+}
+
+TEST(DensePoints, OfALateRightImageAreThoseOfAPairTakenTogether) {
+  const auto errors_of_pair = [](const LatePair& pair, const RightLag& told, size_t& count) {
+    DenseDisparity rough({});
+    const OnTimeView view(pair.rig, told, 1.5);
+    rough.compute(pair.left, pair.right, told.none() ? nullptr : &view);
+    DensePoints points(pair.rig, {});
+    const auto& measured = points.measure(pair.left, pair.right, rough.half_resolution(), told);
+    count = measured.size();
+    std::vector<double> off_px;
+    for (const DensePoint& p : measured)
+      off_px.push_back(std::abs(p.uvu_px.x() - p.uvu_px.z() - pair.disparity_px(p.uvu_px.x(), p.uvu_px.y())));
+    std::sort(off_px.begin(), off_px.end());
+    return Errors{off_px[count / 2], off_px[count * 9 / 10], 0};
+  };
+  size_t in_time = 0, told = 0, untold = 0;
+  const Errors best = errors_of_pair(LatePair(0), {}, in_time);
+  for (const double late_s : {0.05, -0.03}) {
+    const LatePair pair(late_s);
+    const Errors errors = errors_of_pair(pair, pair.lag, told);
+    EXPECT_LT(errors.mean, best.mean + 0.02) << late_s;
+    EXPECT_LT(errors.rms, best.rms + 0.05) << late_s;
+    EXPECT_GT(told, 0.9 * static_cast<double>(in_time)) << late_s;
+    EXPECT_GT(errors_of_pair(pair, {}, untold).mean, 4) << late_s;
+  }
 }
 
 }  // namespace

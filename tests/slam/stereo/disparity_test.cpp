@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "slam/stereo/on_time_view.h"
 #include "tests/slam/features/texture.h"
+#include "tests/slam/stereo/late_pair.h"
 
 namespace groundloop::slam {
 namespace {
@@ -134,6 +136,59 @@ TEST(DisparityOptions, SayWhatTheMatcherCannotDo) {
   ASSERT_GE(problems.size(), 2u);
   EXPECT_EQ(problems[0].text(), "--set: max_disparity_px: 100: wanted a multiple of 32");
   EXPECT_EQ(problems.back().text(), "--set: window_px: 10: wanted an odd number");
+}
+
+struct MapErrors {
+  int known = 0;
+  double off_px = 0;  ///< median
+};
+MapErrors errors_of(const LatePair& pair, const DenseDisparity& dense) {
+  std::vector<double> off_px;
+  for (int v = 20; v < pair.rig.height_px - 20; v += 5) {
+    for (int u = 60; u < pair.rig.width_px - 40; u += 5) {
+      const auto found = dense.around(static_cast<float>(u), static_cast<float>(v));
+      if (found) off_px.push_back(std::abs(*found - pair.disparity_px(u, v)));
+    }
+  }
+  std::sort(off_px.begin(), off_px.end());
+  return {static_cast<int>(off_px.size()), off_px[off_px.size() / 2]};
+}
+
+TEST(DenseDisparity, OfALateRightImageIsThatOfAPairTakenTogether) {
+  DenseDisparity dense({});
+  const LatePair in_time(0);
+  dense.compute(in_time.left, in_time.right);
+  const MapErrors best = errors_of(in_time, dense);
+  for (const double late_s : {0.05, -0.03}) {
+    const LatePair pair(late_s);
+    dense.compute(pair.left, pair.right);
+    const MapErrors untold = errors_of(pair, dense);
+    EXPECT_GT(untold.off_px, 4);
+    const OnTimeView view(pair.rig, pair.lag, 1.5);
+    dense.compute(pair.left, pair.right, &view);
+    const MapErrors told = errors_of(pair, dense);
+    EXPECT_LT(told.off_px, best.off_px + 0.05) << late_s;
+    EXPECT_GT(told.known, 0.95 * best.known) << late_s;
+  }
+}
+
+TEST(DenseDisparity, NothingMatchesOutsideALateRightImage) {
+  const LatePair pair;  // by whose time its left border has lost what was there
+  DenseDisparity dense({});
+  const OnTimeView view(pair.rig, pair.lag, 1.5);
+  dense.compute(pair.left, pair.right, &view);
+  const cv::Mat& map = dense.half_resolution();
+  int known = 0;
+  for (int v = 0; v < map.rows; ++v) {
+    for (int u = 0; u < 60; ++u) {
+      const double u_px = 2 * u + 0.5, v_px = 2 * v + 0.5, disparity_px = map.at<int16_t>(v, u) / 8.0;
+      const auto p_left = pair.rig.triangulate({u_px, v_px, u_px - disparity_px});
+      if (disparity_px < 0 || !p_left) continue;
+      ++known;
+      EXPECT_GT(pair.rig.project(pair.lag.T_late_left() * *p_left).z(), -0.6) << u << ", " << v;
+    }
+  }
+  EXPECT_GT(known, 3000);
 }
 
 }  // namespace

@@ -21,11 +21,13 @@ Vector6d velocity(double ahead_mps, double turning_radps) {
   return velocity;
 }
 
-/// Rows that a calibration puts right by mistake: all alike, and by direction in the image.
+/// By what a calibration puts rows wrong: all alike, and by direction in the image.
 struct RowError {
   double offset_px = 0;
   double by_x_px = 0;
   double by_y_px = 0;
+  double aside_px = 0;  ///< turned so that the image's middle has moved by that
+  double up_px = 0;     ///< the same, after its middle row was put right
 };
 
 class LagEstimateTest : public testing::Test {
@@ -41,7 +43,8 @@ class LagEstimateTest : public testing::Test {
       const double z_m = 1 + 4 * draw(2);
       const Eigen::Vector3d p_left(at.x() * z_m, at.y() * z_m, z_m);
       double off_px = true_lag.shift_px(rig_, p_left).y() - known.shift_px(rig_, p_left).y();
-      off_px += rows_.offset_px + rows_.by_x_px * at.x() + rows_.by_y_px * at.y();
+      off_px += rows_.offset_px + rows_.by_x_px * at.x() + rows_.by_y_px * at.y() +
+                rows_.aside_px * at.x() * at.y() + rows_.up_px * at.y() * at.y();
       off_px += kNoise_px * std::sqrt(12.0) * (draw(3) - 0.5);
       if (i % false_every == 0) off_px = 10 * draw(4) - 5;
       sights.push_back({at, off_px, known.row_flow_px_per_s(rig_, p_left)});
@@ -88,6 +91,29 @@ TEST_F(LagEstimateTest, WhatACalibrationIsOffByIsNoDelay) {
     for (int i = 0; i < 5; ++i) EXPECT_NEAR(observe(turning_, 0.03), 0.03, 0.003) << i;
     EXPECT_EQ(observe(turning_, 0), 0);
   }
+}
+
+TEST_F(LagEstimateTest, AKnockIsNoDelayWhicheverWayTheHeadThenMoves) {
+  for (const Vector6d& moves : {ahead_, turning_, at_rest_}) {
+    estimate_ = LagEstimate(StereoOptions{});
+    rows_ = {};
+    for (int i = 0; i < 10; ++i) EXPECT_EQ(observe(moves, 0), 0) << i;
+    rows_ = {.aside_px = 1, .up_px = 1};
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(observe(moves, 0), 0) << i;
+    for (const double radps : {0.05, 0.2, 0.5, 0.3, 0.1}) {
+      for (int i = 0; i < 10; ++i) EXPECT_EQ(observe(velocity(0.5 * radps, radps), 0), 0) << radps;
+      for (int i = 0; i < 10; ++i) EXPECT_EQ(observe(velocity(0, radps), 0), 0) << radps;
+    }
+    for (int i = 0; i < 5; ++i) EXPECT_NEAR(observe(turning_, 0.03), 0.03, 0.003) << i;
+    EXPECT_EQ(observe(turning_, 0), 0);
+  }
+}
+
+TEST_F(LagEstimateTest, ADelayIsFoundWhereTheHeadTurnsOnTheSpot) {
+  const Vector6d on_the_spot = velocity(0, 0.5);
+  for (int i = 0; i < 5; ++i) observe(ahead_, 0);
+  for (int i = 0; i < 10; ++i) EXPECT_NEAR(observe(on_the_spot, 0.01), 0.01, 0.001) << i;
+  EXPECT_EQ(observe(on_the_spot, 0), 0);
 }
 
 TEST_F(LagEstimateTest, WithTooLittleFlowNothingIsLearntAndNothingForgotten) {

@@ -4,7 +4,9 @@
 
 #include <opencv2/calib3d.hpp>
 
+#include "slam/stereo/on_time_view.h"
 #include "tests/slam/features/texture.h"
+#include "tests/slam/stereo/late_pair.h"
 #include "tests/slam/types/centred_rig.h"
 
 namespace groundloop::slam {
@@ -94,6 +96,36 @@ TEST(StereoMatcher, WhatIsFarFromTheDenseMapIsAnotherSurface) {
   strict.max_prediction_error_px = 1;
   EXPECT_EQ(match_all(seen, strict, other, {-22.5, 0}).found, 0);
   EXPECT_GT(match_all(seen, {}, other, {-22.5, 0}).found, 30);
+}
+
+TEST(StereoMatcher, InALateImageItIsFoundWhereThatShowsIt) {
+  const LatePair pair;
+  const OnTimeView view(pair.rig, pair.lag, 1.5);
+  DenseDisparity dense({});
+  dense.compute(pair.left, pair.right, &view);
+  ImagePyramid left_pyramid, right_pyramid;
+  left_pyramid.build(pair.left, 4);
+  right_pyramid.build(pair.right, 4);
+  const StereoMatcher matcher(pair.rig, {.max_prediction_error_px = 1}, {});
+  PatchTemplate patch;
+  int asked = 0, found = 0;
+  for (int v = 40; v < 280; v += 23) {
+    for (int u = 100; u < 440; u += 23) {
+      const Eigen::Vector2f at(static_cast<float>(u), static_cast<float>(v));
+      if (!patch.take(left_pyramid, at, 4)) continue;
+      ++asked;
+      AffineState left;
+      left.uv_px = at;
+      const auto right = matcher.match(patch, left, dense, right_pyramid, pair.lag);
+      if (!right) continue;
+      ++found;
+      const auto p_left = pair.rig.triangulate(Eigen::Vector3d(u, v, u - pair.disparity_px(u, v)));
+      const Eigen::Vector3d late = pair.rig.project(pair.lag.T_late_left() * *p_left);
+      EXPECT_LT((right->uv_px.cast<double>() - Eigen::Vector2d(late.z(), late.y())).norm(), 0.4)
+          << at.transpose();
+    }
+  }
+  EXPECT_GT(found, 0.9 * asked);
 }
 
 TEST(StereoMatcher, NothingDenseNothingMatched) {
