@@ -44,11 +44,20 @@ std::string base64(const std::vector<uint8_t>& bytes) {
   return text;
 }
 
-std::string image_uri(const cv::Mat& bgr, size_t max_bytes) {
+Picture packed(const cv::Mat& bgr) {
+  Picture picture{bgr, {}};
+  cv::imencode(".png", bgr, picture.png);
+  return picture;
+}
+
+std::string image_uri(const Picture& picture, Content content, size_t max_bytes) {
+  if (picture.png.size() <= max_bytes) return "data:image/png;base64," + base64(picture.png);
   std::vector<uint8_t> bytes;
-  cv::imencode(".png", bgr, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6});
-  if (bytes.size() <= max_bytes) return "data:image/png;base64," + base64(bytes);
-  cv::Mat image = bgr;
+  if (content == Content::kDrawn) {
+    cv::imencode(".png", picture.bgr, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6});
+    if (bytes.size() <= max_bytes) return "data:image/png;base64," + base64(bytes);
+  }
+  cv::Mat image = picture.bgr;
   for (int quality = 90;; quality -= 10) {
     cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
     if (bytes.size() <= max_bytes || image.cols < 200) return "data:image/jpeg;base64," + base64(bytes);

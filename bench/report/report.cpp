@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
 #include <future>
+#include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <ostream>
 
@@ -43,25 +45,30 @@ std::string section(const std::string& title, const std::string& content) {
   return "<section><h2>" + title + "</h2>" + content + "</section>\n";
 }
 
-std::string picture(const cv::Mat& bgr, size_t max_bytes, const std::string& alt) {
-  return fmt::format("<img src=\"{}\" width=\"{}\" height=\"{}\" alt=\"{}\">", image_uri(bgr, max_bytes),
-                     bgr.cols, bgr.rows, escape_html(alt));
+std::string image(const Picture& picture, Content content, size_t max_bytes, const std::string& alt) {
+  return fmt::format("<img src=\"{}\" width=\"{}\" height=\"{}\" alt=\"{}\">",
+                     image_uri(picture, content, max_bytes), picture.bgr.cols, picture.bgr.rows,
+                     escape_html(alt));
 }
 
 std::string plot(const Plot& what) { return "<div class=\"scroll\">" + svg_plot(what) + "</div>"; }
 
 /// A picture that the run left in figures/; empty when it did not.
-cv::Mat left_by_run(const RunFolder& run, const char* name) {
-  const fs::path file = fs::path(run.dir) / "figures" / name;
-  return fs::exists(file) ? cv::imread(file.string(), cv::IMREAD_COLOR) : cv::Mat();
+Picture left_by_run(const RunFolder& run, const char* name) {
+  std::ifstream file(fs::path(run.dir) / "figures" / name, std::ios::binary);
+  Picture picture;
+  picture.png.assign(std::istreambuf_iterator<char>(file), {});
+  if (!picture.png.empty()) picture.bgr = cv::imdecode(picture.png, cv::IMREAD_COLOR);
+  return picture;
 }
 
-void save_figure(const RunFolder& run, const char* name, const cv::Mat& bgr) {
-  std::vector<uint8_t> bytes;
-  cv::imencode(".png", bgr, bytes);
+Picture saved(const RunFolder& run, const char* name, const cv::Mat& bgr) {
+  Picture picture = packed(bgr);
   slam::write_file_atomically((fs::path(run.dir) / "figures" / name).string(), [&](std::ostream& out) {
-    out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    out.write(reinterpret_cast<const char*>(picture.png.data()),
+              static_cast<std::streamsize>(picture.png.size()));
   });
+  return picture;
 }
 
 // ---- first screen
@@ -121,17 +128,18 @@ std::string tiles(const RunFolder& run) {
 
 std::string frame_section(const RunFolder& run) {
   std::string html = "<div class=\"pair\">";
-  if (const cv::Mat tracked = left_by_run(run, "left_tracked.png"); !tracked.empty()) {
+  if (const Picture tracked = left_by_run(run, "left_tracked.png"); !tracked.bgr.empty()) {
     html +=
-        figure(picture(tracked, kPhotoBytes, "Left image of the stereo pair with tracked features marked"),
+        figure(image(tracked, Content::kPhoto, kPhotoBytes,
+                     "Left image of the stereo pair with tracked features marked"),
                "Left image with tracked features.",
                "Rings: tracked and agreeing with the motion; crosses: tracked but rejected; squares: new. "
                "(Paper: Fig. 1 simulated, Fig. 7 real.)");
   }
-  if (const cv::Mat disparity = left_by_run(run, "disparity.png"); !disparity.empty()) {
-    html +=
-        figure(picture(disparity, kPhotoBytes * 2 / 3, "Dense disparity map in false colours with its scale"),
-               "Dense disparity.", "Red is near, blue far, dark unknown. (Paper: Fig. 2.)");
+  if (const Picture disparity = left_by_run(run, "disparity.png"); !disparity.bgr.empty()) {
+    html += figure(image(disparity, Content::kPhoto, kPhotoBytes * 2 / 3,
+                         "Dense disparity map in false colours with its scale"),
+                   "Dense disparity.", "Red is near, blue far, dark unknown. (Paper: Fig. 2.)");
   }
   html += "</div>";
   return html == "<div class=\"pair\"></div>" ? note("The run kept no left image and no disparity map.")
@@ -143,19 +151,20 @@ cv::Mat top_view_of(const TopView& view) {
   return view.estimate.empty() && view.cloud.empty() ? cv::Mat() : draw_top_view(view);
 }
 
-std::string top_view_section(const RunFolder& run, const TopView& view, const cv::Mat& image) {
-  if (image.empty()) return note("The run left no trajectory and no point cloud.");
-  save_figure(run, "top_view.png", image);
+std::string top_view_section(const RunFolder& run, const TopView& view, const cv::Mat& drawn) {
+  if (drawn.empty()) return note("The run left no trajectory and no point cloud.");
+  const Picture picture = saved(run, "top_view.png", drawn);
   const std::string truth = view.truth.empty() ? "No true trajectory is known."
                                                : "Black: the true trajectory, red: the estimated one.";
   std::string links;
   if (!view.links.empty()) links += " Violet: from where a place was seen first to where it was recognised.";
   if (!view.without_links.empty()) links += " Orange: the estimate, had no place been recognised.";
-  return figure(picture(image, kTopViewBytes, "Top view of trajectory and point cloud over the scene"),
-                "Top view of trajectory and point cloud.",
-                truth + links +
-                    " Dots and segments: position and heading of key frames. Points are coloured by height; "
-                    "uncertain ones are faint. (Paper: Fig. 3 simulated, Fig. 8 real.)");
+  return figure(
+      image(picture, Content::kDrawn, kTopViewBytes, "Top view of trajectory and point cloud over the scene"),
+      "Top view of trajectory and point cloud.",
+      truth + links +
+          " Dots and segments: position and heading of key frames. Points are coloured by height; "
+          "uncertain ones are faint. (Paper: Fig. 3 simulated, Fig. 8 real.)");
 }
 
 /// The run's map as it is shown.
@@ -197,30 +206,32 @@ MapPictures map_pictures(const RunFolder& run, const PlacedRun& place) {
 
 std::string map_section(const RunFolder& run, const MapPictures& pictures) {
   if (pictures.pair.empty()) return note("The run left no occupancy map.");
-  save_figure(run, "map.png", pictures.pair);
+  const Picture pair = saved(run, "map.png", pictures.pair);
   const std::string caption = pictures.exact_known
                                   ? "Left: what SLAM made; right: exact, from the geometry of the scene."
                                   : "No exact map is known for this run.";
-  std::string html = figure(picture(pictures.pair, kPlanBytes, "Estimated occupancy map and the exact one"),
-                            "Final occupancy map.", caption + " (Paper: Fig. 4 simulated, Fig. 9 real.)");
+  std::string html =
+      figure(image(pair, Content::kDrawn, kPlanBytes, "Estimated occupancy map and the exact one"),
+             "Final occupancy map.", caption + " (Paper: Fig. 4 simulated, Fig. 9 real.)");
   if (pictures.difference.empty()) return html;
-  save_figure(run, "map_difference.png", pictures.difference);
-  return html +
-         figure(picture(pictures.difference, kPlanBytes, "Differences of the estimated from the exact map"),
-                "Where the map is wrong.", "Cell by cell, where the true trajectory could see.");
+  const Picture difference = saved(run, "map_difference.png", pictures.difference);
+  return html + figure(image(difference, Content::kDrawn, kPlanBytes,
+                             "Differences of the estimated from the exact map"),
+                       "Where the map is wrong.", "Cell by cell, where the true trajectory could see.");
 }
 
 std::string scene_section(const RunFolder& run) {
-  const cv::Mat preview = left_by_run(run, "preview.png");
-  if (preview.empty()) return note("The run left no picture of the scene and plan.");
-  return figure(picture(preview, kPlanBytes, "Top view of the scene with the planned trajectory"),
-                "Model of the scene and planned trajectory.", "(Paper: Fig. 5.)");
+  const Picture preview = left_by_run(run, "preview.png");
+  if (preview.bgr.empty()) return note("The run left no picture of the scene and plan.");
+  return figure(
+      image(preview, Content::kDrawn, kPlanBytes, "Top view of the scene with the planned trajectory"),
+      "Model of the scene and planned trajectory.", "(Paper: Fig. 5.)");
 }
 
 /// The five figures of the paper's simulated run; nothing when one is missing.
 std::string plate_section(const RunFolder& run, const cv::Mat& top_view, const cv::Mat& map) {
-  const cv::Mat left = left_by_run(run, "left.png"), disparity = left_by_run(run, "disparity.png");
-  const cv::Mat scene = left_by_run(run, "preview.png");
+  const cv::Mat left = left_by_run(run, "left.png").bgr, disparity = left_by_run(run, "disparity.png").bgr;
+  const cv::Mat scene = left_by_run(run, "preview.png").bgr;
   for (const cv::Mat& picture : {left, disparity, top_view, scene, map}) {
     if (picture.empty()) return "";
   }
@@ -228,11 +239,11 @@ std::string plate_section(const RunFolder& run, const cv::Mat& top_view, const c
                                     {{"Fig. 3: estimated trajectory and cloud", top_view},
                                      {"Fig. 5: model of the scene, planned trajectory", scene}},
                                     {{"Fig. 4: final occupancy map", map}}});
-  save_figure(run, "paper_figures.png", plate);
+  const Picture picture = saved(run, "paper_figures.png", plate);
   return section(
       "The paper's five figures",
-      figure(picture(plate, kPlateBytes,
-                     "Left image, disparity, top view, scene with plan, and map on one plate"),
+      figure(image(picture, Content::kPhoto, kPlateBytes,
+                   "Left image, disparity, top view, scene with plan, and map on one plate"),
              "Side by side.", "Numbered as in the paper, section 3.1; each again below, in full size."));
 }
 

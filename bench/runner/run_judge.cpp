@@ -25,7 +25,7 @@ std::future<slam::OccupancyMap> map_at_true_poses(const slam::Pipeline& core, co
   return std::async(std::launch::async,
                     [rig = source.rig(), options = core.options().mapping, looks = std::move(looks)] {
                       slam::Mapper mapper(rig, options);
-                      for (const auto& look : looks) mapper.add(look.T_map_left, *look.observations);
+                      mapper.add_by_two(looks);
                       return mapper.grid().map();
                     });
 }

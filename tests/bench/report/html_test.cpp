@@ -29,8 +29,14 @@ TEST(Html, PicturesKeepToTheirSize) {
     *it = {static_cast<uint8_t>(state >> 8), static_cast<uint8_t>(state >> 16),
            static_cast<uint8_t>(state >> 24)};
   }
-  EXPECT_TRUE(image_uri(flat, 5000).starts_with("data:image/png;base64,iVBOR"));
-  const std::string small = image_uri(noise, 60'000);
+  EXPECT_TRUE(image_uri(packed(flat), Content::kDrawn, 5000).starts_with("data:image/png;base64,iVBOR"));
+  // a pattern that only patience packs well
+  cv::Mat pattern(200, 300, CV_8UC3);
+  for (int v = 0; v < pattern.rows; ++v) noise.row(v % 16).colRange(0, pattern.cols).copyTo(pattern.row(v));
+  EXPECT_GT(packed(pattern).png.size(), 30'000U);
+  EXPECT_TRUE(image_uri(packed(pattern), Content::kDrawn, 30'000).starts_with("data:image/png"));
+  EXPECT_TRUE(image_uri(packed(pattern), Content::kPhoto, 30'000).starts_with("data:image/jpeg"));
+  const std::string small = image_uri(packed(noise), Content::kDrawn, 60'000);
   EXPECT_TRUE(small.starts_with("data:image/jpeg;base64,/9j/"));
   EXPECT_LE(small.size(), 60'000U * 4 / 3 + 40);
 }
