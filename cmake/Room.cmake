@@ -16,5 +16,6 @@ function(groundloop_test name)
   target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   gtest_discover_tests(test_${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600
     ENVIRONMENT TSAN_OPTIONS=detect_deadlocks=0
+    ENVIRONMENT_MODIFICATION LSAN_OPTIONS=set:suppressions=${PROJECT_SOURCE_DIR}/cmake/leaks.supp
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} TEST_PREFIX "${name}.")
 endfunction()

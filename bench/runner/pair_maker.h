@@ -1,10 +1,10 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 
+#include "bench/runner/dressed_world.h"
 #include "bench/runner/raw_images.h"
 #include "sim/cache/pair_cache.h"
 #include "sim/head/head.h"
@@ -14,24 +14,6 @@
 #include "sim/world/world.h"
 
 namespace groundloop::bench {
-
-/// A scenario's world with all its looks, read when the first pair is rendered: decoding the textures takes
-/// longer than everything else before a run.
-class DressedWorld {
- public:
-  explicit DressedWorld(const sim::Scenario& scenario) : scenario_(scenario) {}
-  /// May be called from several threads.
-  /// @throws InputError when a texture cannot be read
-  const sim::World& get() {
-    std::call_once(once_, [this] { world_.emplace(sim::World::load(scenario_)); });
-    return *world_;
-  }
-
- private:
-  const sim::Scenario& scenario_;
-  std::once_flag once_;
-  std::optional<sim::World> world_;
-};
 
 /// What a run's pairs are made of; every maker of the run has the same.
 struct PairIngredients {
