@@ -15,7 +15,7 @@ function(groundloop_test name)
   # A third of the time to compile them; what they test is optimised as ever.
   target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   gtest_discover_tests(test_${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600
-    ENVIRONMENT TSAN_OPTIONS=detect_deadlocks=0
+    ENVIRONMENT TSAN_OPTIONS=detect_deadlocks=0:suppressions=${PROJECT_SOURCE_DIR}/cmake/races.supp
     ENVIRONMENT_MODIFICATION LSAN_OPTIONS=set:suppressions=${PROJECT_SOURCE_DIR}/cmake/leaks.supp
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} TEST_PREFIX "${name}.")
 endfunction()

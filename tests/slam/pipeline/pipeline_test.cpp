@@ -83,6 +83,7 @@ TEST_P(Preset, FollowsAnArcThroughARoom) {
 TEST_P(Preset, ItsPointsLieOnTheWalls) {
   Pipeline core(room_.rig(), preset(GetParam()));
   for (int64_t i = 0; i < 13; ++i) core.process(room_.frame(i));
+  core.finish();
   const std::vector<CloudPoint> cloud = core.cloud();
   ASSERT_GT(cloud.size(), 60u);
   // The map begins where the robot was: the room is 6 m x 5 m x 2.5 m about (1, 0.5).
@@ -412,6 +413,7 @@ TEST_F(PipelineTest, TwoCoresAgreeBitByBit) {
     const StereoFrame frame = i == 5 ? room_.dark_frame(i) : room_.frame(i);
     EXPECT_EQ(a.process(frame).state_hash, b.process(frame).state_hash) << i;
   }
+  a.finish(), b.finish();
   EXPECT_EQ(a.map().value, b.map().value);
   ASSERT_EQ(a.cloud().size(), b.cloud().size());
   for (size_t i = 0; i < a.cloud().size(); ++i) EXPECT_EQ(a.cloud()[i].p_map, b.cloud()[i].p_map);
