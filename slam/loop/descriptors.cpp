@@ -87,6 +87,7 @@ void match_descriptors(const std::vector<Keypoint>& a, const std::vector<Keypoin
   constexpr int kFar = 257;
   matches.clear();
   std::vector<Descriptor> others;
+  others.reserve(b.size());
   for (const Keypoint& keypoint : b) others.push_back(keypoint.descriptor);
   std::vector<int> row(b.size());
   std::vector<int> column_best(b.size(), kFar), column_a(b.size(), -1);
