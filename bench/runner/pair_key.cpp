@@ -6,7 +6,6 @@
 
 #include "bench/runner/pixel_sources.h"
 #include "bench/runner/provenance.h"
-#include "sim/world/mjcf.h"
 
 namespace groundloop::bench {
 namespace {
@@ -113,7 +112,7 @@ sim::KeyBuilder run_key(const sim::World& world, const sim::HeadModel& head, con
   key.add(to_yaml(seen));
   key.add(scenario.seed);
   add_model(key, world.model());
-  add_textures(key, sim::scene_mjcf(scenario));
+  add_textures(key, sim::compose_scene(scenario).mjcf);
   return key;
 }
 

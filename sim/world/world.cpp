@@ -121,7 +121,7 @@ MjcfElement world_mjcf(const Scenario& scenario) {
   return text ? read_mjcf_text(*text, scenario.file + " (generated world)") : read_mjcf(scenario.world.file);
 }
 
-MjcfElement scene_mjcf(const Scenario& scenario, Looks looks) {
+ComposedScene compose_scene(const Scenario& scenario, Looks looks) {
   MjcfElement world = world_mjcf(scenario);
   MjcfElement robot = read_mjcf(scenario.robot.model);
   std::vector<MjcfElement> people;
@@ -131,17 +131,17 @@ MjcfElement scene_mjcf(const Scenario& scenario, Looks looks) {
     strip_textures(robot);
     for (MjcfElement& person : people) strip_textures(person);
   }
-  return compose_mjcf(std::move(world), std::move(robot), std::move(people));
+  std::string robot_body = robot_root_body(robot);  // before it moves away: a root without a name gets one
+  return {compose_mjcf(std::move(world), std::move(robot), std::move(people)), std::move(robot_body)};
 }
 
 World World::load(const Scenario& scenario, Looks looks) {
-  MjcfElement robot = read_mjcf(scenario.robot.model);
-  const std::string body = robot_root_body(robot);
-  ModelPtr model = compile(scene_mjcf(scenario, looks));
+  const ComposedScene scene = compose_scene(scenario, looks);
+  ModelPtr model = compile(scene.mjcf);
   const auto body_id = [&](const std::string& name) {
     return mj_name2id(model.get(), mjOBJ_BODY, name.c_str());
   };
-  const int robot_body = body_id(body);
+  const int robot_body = body_id(scene.robot_body);
   std::vector<int> people_bodies;
   for (const Person& person : scenario.people) people_bodies.push_back(body_id(person.name));
   StartPose start = scenario.robot.start;

@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "sim/scenario/scenario.h"
+#include "sim/world/mjcf.h"
 
 namespace groundloop::sim {
-
-struct MjcfElement;
 
 /// MJCF text of the scenario's world when it is generated, else none.
 /// @pre the recipe has a seed
@@ -26,10 +25,13 @@ enum class Looks {
   kNone,  ///< no textures: the same geometry, loaded many times faster
 };
 
-/// The scenario's world, robot and people composed into one MJCF document, in the order in which MuJoCo
-/// numbers them.
+/// The scenario's world, robot and people in one MJCF document, in the order in which MuJoCo numbers them.
+struct ComposedScene {
+  MjcfElement mjcf;
+  std::string robot_body;  ///< name of the robot's root body
+};
 /// @throws InputError naming file, line and element: unreadable XML, missing files, no robot body
-MjcfElement scene_mjcf(const Scenario& scenario, Looks looks = Looks::kAll);
+ComposedScene compose_scene(const Scenario& scenario, Looks looks = Looks::kAll);
 
 /// A world file and a robot file composed into one MuJoCo model, at the scenario's scale. Constant after
 /// loading.

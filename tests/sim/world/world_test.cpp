@@ -69,6 +69,17 @@ TEST_F(WorldTest, StartPoseKeepsHeightAndOrientationOfTheFile) {
   EXPECT_FALSE(world.is_robot_geom(mj_name2id(&world.model(), mjOBJ_GEOM, "floor")));
 }
 
+TEST_F(WorldTest, ARobotWithoutANameIsTheRobotAllTheSame) {
+  const Scenario scenario = this->scenario(
+      "<mujoco/>", "<mujoco><worldbody><body><freejoint/><geom size='1'/></body></worldbody></mujoco>");
+  for (const Looks looks : {Looks::kAll, Looks::kNone}) {
+    const World world = World::load(scenario, looks);
+    ASSERT_GE(world.robot_body(), 0);
+    EXPECT_STREQ(mj_id2name(&world.model(), mjOBJ_BODY, world.robot_body()), "robot");
+    EXPECT_TRUE(world.is_robot_geom(0));
+  }
+}
+
 TEST_F(WorldTest, MissingAssetsAreAllNamedWithTheirPlace) {
   const std::string file = write("w.xml", R"(<mujoco>
   <compiler texturedir="generated" meshdir="shapes"/>
