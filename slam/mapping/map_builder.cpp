@@ -38,17 +38,14 @@ bool MapBuilder::draw(const std::vector<Pose>& T_map_place, size_t looks) {
 void MapBuilder::complete(const std::vector<Pose>& T_map_place, bool by_two) {
   next_.reset();
   current_ = Grid{Mapper(rig_, options_), {}};
+  if (!by_two) return fill(current_, T_map_place, looks_.size());
   std::vector<PosedObservations> seen;
   seen.reserve(looks_.size());
   for (const Look& look : looks_) {
     seen.push_back({T_map_place[look.place] * look.T_place_left, look.observations});
     current_.T_map_left.push_back(seen.back().T_map_left);
   }
-  if (by_two) {
-    current_.mapper.add_by_two(seen);
-  } else {
-    for (const PosedObservations& look : seen) current_.mapper.add(look.T_map_left, *look.observations);
-  }
+  current_.mapper.add_by_two(seen);
 }
 
 /// What a forgotten look wrote stays in the grids until the next rebuild.

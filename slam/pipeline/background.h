@@ -11,7 +11,7 @@
 
 namespace groundloop::slam {
 
-/// Work beside the frame path whose results enter at a frame that is fixed when the work is given out.
+/// Work beside the frame path whose results enter at a frame that is fixed by what is given out, and when.
 ///
 /// One worker does the jobs one after another, in the order in which they were given; a result is taken when
 /// its frame has come, and waited for if it is not there yet. So what the frame path sees does not depend on

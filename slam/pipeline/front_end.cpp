@@ -102,7 +102,7 @@ RightLag FrontEnd::lag_after(const Pose& T_previous_left) const {
 
 /// Learns from the rows of what was tracked how late the right image is, and takes it off.
 void FrontEnd::check_lag(const Pose& T_kf_previous, const Pose& T_kf_left) {
-  if (options_.stereo.max_right_late_s == 0) return;
+  if (!lag_estimate_.wanted()) return;
   const Pose T_left_kf = T_kf_left.inverse();
   lag_sights_.clear();
   for (const Feature& feature : tracker_.features()) {

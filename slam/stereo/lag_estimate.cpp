@@ -58,7 +58,7 @@ std::optional<LagEstimate::OfPair> LagEstimate::fit(const std::vector<LagSight>&
 }
 
 void LagEstimate::observe(const std::vector<LagSight>& sights) {
-  if (options_.max_right_late_s == 0 || sights.size() < kFewest) return;
+  if (!wanted() || sights.size() < kFewest) return;
   const std::optional<OfPair> pair = fit(sights);
   if (!pair) return;
   turned_px_ = pair->turned_px;

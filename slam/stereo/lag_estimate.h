@@ -27,6 +27,9 @@ class LagEstimate {
  public:
   explicit LagEstimate(const StereoOptions& options) : options_(options) {}
 
+  /// Whether a lag is looked for at all; if not, nothing need be observed.
+  bool wanted() const { return options_.max_right_late_s > 0; }
+
   /// Takes the matches of one pair. Where too little flows, nothing is learnt and nothing forgotten.
   void observe(const std::vector<LagSight>& sights);
 
