@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slam/types/pose.h"
+#include "slam/types/stereo_uncertainty.h"
 
 namespace groundloop::slam {
 
@@ -13,7 +14,7 @@ namespace groundloop::slam {
 struct AdjustmentOptions {
   int key_frames = 8;           ///< newest key frames in the window, the anchored ones included; 0: off
   int max_iterations = 5;       ///< of reweighted least squares
-  double sigma_px = 0.12;       ///< standard deviation of one image coordinate of a tracked feature
+  double sigma_px = 0.12;       ///< standard deviation of one image coordinate of a typical tracked feature
   double lorentz_scale = 1.0;   ///< in standard deviations: larger misfits lose weight
   double outlier_sigmas = 5.0;  ///< misfit in standard deviations from which an observation counts as false
   /// Variance of the motions, relative to that of landmarks which err independently of each other: windows on
@@ -48,7 +49,8 @@ struct AdjustmentObservation {
   int key_frame = 0;                                 ///< index into key_frames
   int landmark = 0;                                  ///< index into landmarks_odom
   Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();  ///< (u_left, v, u_right)
-  double sigma_px = 0;  ///< of one coordinate of one image; v, the mean of two rows, has variance sigma^2 / 2
+  double sigma_px = 0;                               ///< of one coordinate of one image
+  Eigen::Matrix3d cofactor = equal_cofactor();       ///< covariance of uvu_px relative to sigma_px^2
 };
 
 /// A relative motion known from elsewhere: plan or wheel odometry.

@@ -10,8 +10,8 @@ namespace groundloop::slam {
 using Matrix63d = Eigen::Matrix<double, 6, 3>;
 
 /// What one observation adds to the normal equations, before its robust weight. With J_x, J_l the derivatives
-/// of the projection by the twist x of T_odom_left exp(x) and by the landmark l in odom, W = diag(1, 2, 1) /
-/// sigma^2 the information of (u_left, v, u_right), and r = measured - projected:
+/// of the projection by the twist x of T_odom_left exp(x) and by the landmark l in odom, W the information of
+/// (u_left, v, u_right), and r = measured - projected:
 struct ObservationTerms {
   double s = 0;                                    ///< r^T W r: squared misfit in standard deviations
   Matrix6d H_xx = Matrix6d::Zero();                ///< J_x^T W J_x
@@ -24,8 +24,9 @@ struct ObservationTerms {
 /// Squared misfit given to a landmark that is not before the camera: so large that it has no weight.
 constexpr double kNotInView = 1e6;
 
+/// @param W  inverse covariance of uvu_px
 /// @return false, s = kNotInView and zeros when the landmark is less than 1 cm before the camera
 bool observation_terms(const StereoRig& rig, const Pose& T_odom_left, const Eigen::Vector3d& p_odom,
-                       const Eigen::Vector3d& uvu_px, double sigma_px, ObservationTerms& terms);
+                       const Eigen::Vector3d& uvu_px, const Eigen::Matrix3d& W, ObservationTerms& terms);
 
 }  // namespace groundloop::slam

@@ -114,7 +114,12 @@ bool WindowAdjustment::sort_observations(const AdjustmentProblem& problem, std::
                             in.uvu_px.x(), in.uvu_px.y(), in.uvu_px.z());
       return false;
     }
-    observations_.push_back({in.uvu_px, in.sigma_px, in.landmark, in.key_frame,
+    Eigen::Matrix3d information;
+    if (!invert(in.sigma_px * in.sigma_px * in.cofactor, information)) {
+      message = fmt::format("observation {} has a cofactor that is no covariance", i);
+      return false;
+    }
+    observations_.push_back({in.uvu_px, information, in.landmark, in.key_frame,
                              unknown_[static_cast<size_t>(in.key_frame)], static_cast<int>(i)});
     ++first_[static_cast<size_t>(in.landmark) + 1];
   }
@@ -213,7 +218,7 @@ double WindowAdjustment::reduce(size_t landmark, double damping) {
     const Observation& o = observations_[n];
     ObservationTerms& t = terms_[n - begin];
     observation_terms(rig_, T_odom_left_[static_cast<size_t>(o.key_frame)], p_odom_[landmark], o.uvu_px,
-                      o.sigma_px, t);
+                      o.information, t);
     s_[n] = t.s;
     weight_[n] = 1 / (1 + t.s / k2);  // of k^2 log(1 + s / k^2), as its derivative by s
     cost += k2 * std::log1p(t.s / k2);

@@ -36,7 +36,7 @@ class WindowAdjustment {
   /// An observation as the solver keeps it: by landmark, then key frame.
   struct Observation {
     Eigen::Vector3d uvu_px;
-    double sigma_px;
+    Eigen::Matrix3d information;  ///< inverse covariance of uvu_px
     int landmark;
     int key_frame;
     int unknown;  ///< first of the six unknowns of its key frame, -1 for an anchor

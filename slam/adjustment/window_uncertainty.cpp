@@ -111,12 +111,13 @@ void WindowAdjustment::add_noise(size_t landmark) {
 /// The gradients g_j are those at the estimate, which has bent itself to them. What landmark j pulls at the
 /// estimate made of the others is (I - H_j H^-1)^-1 g_j, with H_j its own reduced information: the sum of
 /// (H_j H^-1)^i g_j (the jackknife; Bell & McCaffrey, "Bias reduction in standard errors for linear
-/// regression with multi-stage samples", Survey Methodology 28, 2002). The series is cut short, which bounds
-/// what a key frame that hangs on a single landmark is given.
+/// regression with multi-stage samples", Survey Methodology 28, 2002). The series is cut short, and no term
+/// may be larger than the one before: that bounds what a key frame that hangs on a single landmark is given.
 void WindowAdjustment::unbend(size_t landmark) {
   const size_t begin = first_[landmark], end = first_[landmark + 1];
   const auto free = [&](size_t n) { return observations_[n].unknown >= 0; };
   std::copy_n(pull_.begin(), end - begin, own_pull_.begin());
+  double share = 1;
   for (int i = 0; i < kPulls; ++i) {
     Eigen::Vector3d at_landmark = Eigen::Vector3d::Zero();
     for (size_t n = begin; n < end; ++n) {
@@ -130,10 +131,15 @@ void WindowAdjustment::unbend(size_t landmark) {
       }
       at_landmark.noalias() += weight_[n] * terms_[n - begin].H_xl.transpose() * moved;
     }
+    double energy = 0, next_energy = 0;
     for (size_t n = begin; n < end; ++n) {
-      pull_[n - begin] = own_pull_[n - begin] + weight_[n] * terms_[n - begin].H_xx * moved_[n - begin] -
-                         gain_[n] * at_landmark;
+      const Vector6d next = weight_[n] * terms_[n - begin].H_xx * moved_[n - begin] - gain_[n] * at_landmark;
+      energy += moved_[n - begin].dot(pull_[n - begin]);
+      next_energy += moved_[n - begin].dot(next);
+      pull_[n - begin] = next;
     }
+    if (i == 0 && next_energy > energy) share = energy / next_energy;
+    for (size_t n = begin; n < end; ++n) pull_[n - begin] = own_pull_[n - begin] + share * pull_[n - begin];
   }
 }
 

@@ -144,12 +144,15 @@ KltStatus align_level(const PatchLevel& level, const cv::Mat& image, const KltOp
 /// What the match itself says of its precision: its residual, 2 (1 - ncc) over the window as both patches
 /// have unit norm, is the noise; the Hessian turns it into a covariance of position with shape and brightness
 /// left free.
-float position_sigma_px(const PatchLevel& level, const AffineState& state) {
+Eigen::Matrix2f position_covariance_px2(const PatchLevel& level, const AffineState& state) {
   const float variance = 2 * std::max(0.0F, 1 - state.ncc) / kArea;
-  const Eigen::Matrix2f C = state.A * level.inverse_hessian.topLeftCorner<2, 2>() * state.A.transpose();
+  return variance * (state.A * level.inverse_hessian.topLeftCorner<2, 2>() * state.A.transpose());
+}
+
+/// Of the least certain direction.
+float largest_variance(const Eigen::Matrix2f& C) {
   const float half_trace = 0.5F * C.trace();
-  const float largest = half_trace + std::sqrt(std::max(0.0F, half_trace * half_trace - C.determinant()));
-  return std::sqrt(variance * largest);
+  return half_trace + std::sqrt(std::max(0.0F, half_trace * half_trace - C.determinant()));
 }
 
 }  // namespace
@@ -202,9 +205,11 @@ KltStatus track_affine(const PatchTemplate& patch, const ImagePyramid& pyramid, 
     state = at_level;
     state.uv_px *= factor;
   }
-  state.sigma_px = position_sigma_px(patch.level[0], state);
+  state.covariance_px2 = position_covariance_px2(patch.level[0], state);
   state.uv_px += state.A * (patch.pull * state.c_per_px);
-  const bool good = state.ncc >= options.min_ncc && state.sigma_px <= options.max_sigma_px;
+  const auto max_sigma_px = static_cast<float>(options.max_sigma_px);
+  const bool good =
+      state.ncc >= options.min_ncc && largest_variance(state.covariance_px2) <= max_sigma_px * max_sigma_px;
   return good ? KltStatus::kTracked : KltStatus::kPoorMatch;
 }
 

@@ -68,7 +68,9 @@ struct AffineState {
   Eigen::Matrix2f A = Eigen::Matrix2f::Identity();
   Eigen::Vector2f c_per_px = Eigen::Vector2f::Zero();  ///< perspective, known from elsewhere: not estimated
   float ncc = 0;                                       ///< normalised cross-correlation reached
-  float sigma_px = 0;  ///< standard deviation of uv_px in its least certain direction
+  /// Of uv_px, by what is left of the match and the texture of the window: its shape is that of the errors,
+  /// its size some eight times too small, as interpolation has smoothed what it is judged by.
+  Eigen::Matrix2f covariance_px2 = Eigen::Matrix2f::Zero();
 };
 
 enum class KltStatus { kTracked, kOutside, kDegenerate, kPoorMatch };

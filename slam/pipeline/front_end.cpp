@@ -155,8 +155,10 @@ void FrontEnd::register_points(const StereoFrame& frame, const Pose& T_kf_predic
   for (size_t i = 0; i < features.size(); ++i) {
     features[i].is_inlier = false;
     if (!features[i].in_right) continue;
+    weigh(features[i]);
     pairs_.push_back({features[i].p_kf, features[i].covariance_kf,
-                      optimal_measurement(features[i].left.uv_px, features[i].right.uv_px)});
+                      optimal_measurement(features[i].left.uv_px, features[i].right.uv_px),
+                      features[i].cofactor});
     pair_feature_.push_back(i);
   }
   const uint64_t seed = mix_bits(options_.seed) ^ static_cast<uint64_t>(frame.index);
@@ -167,6 +169,11 @@ void FrontEnd::register_points(const StereoFrame& frame, const Pose& T_kf_predic
   const std::optional<Pose> exact = oracle_->T_from_to(kf_frame_, frame.index);
   registered_.usable = registered_.usable && exact;
   if (exact) registered_.T_from_to = *exact;
+}
+
+void FrontEnd::weigh(Feature& feature) const {
+  if (options_.tracking.own_precision)
+    feature.cofactor = match_cofactor(feature.left.covariance_px2, feature.right.covariance_px2);
 }
 
 void FrontEnd::look_up_tracks(int64_t frame) {
@@ -205,7 +212,7 @@ void FrontEnd::triangulate_again() {
     const std::optional<Eigen::Vector3d> p = rig_.triangulate(uvu);
     if (!p) return true;
     feature.p_kf = *p;
-    feature.covariance_kf = point_covariance(rig_, uvu, options_.registration.sigma_px);
+    feature.covariance_kf = point_covariance(rig_, uvu, options_.registration.sigma_px, feature.cofactor);
     ++feature.key_frames;
     return false;
   });
@@ -239,7 +246,8 @@ void FrontEnd::add_features(const StereoFrame& frame, StageClock& clock) {
     feature->in_right = true;
     feature->first_frame = frame.index;
     feature->p_kf = *rig_.triangulate(uvu);
-    feature->covariance_kf = point_covariance(rig_, uvu, options_.registration.sigma_px);
+    weigh(*feature);
+    feature->covariance_kf = point_covariance(rig_, uvu, options_.registration.sigma_px, feature->cofactor);
     feature->slope_per_px = inverse_depth_slope(feature->left, feature->right,
                                                 uvu.x() - uvu.z() - rig_.disparity_at_infinity_px());
     feature->key_frames = 1;
@@ -269,6 +277,7 @@ bool FrontEnd::match(int64_t frame, Feature& feature) {
   const auto right = matcher_.match(tracker_.first_view(feature), feature.left, dense_, right_, lag_);
   if (!right) return false;
   feature.right = *right;
+  feature.left.covariance_px2 = right->covariance_px2;  // noise of the first view moves all later ones
   feature.found_right = true;
   feature.late_px = lag_.shift_px(rig_, feature.left.uv_px, feature.right.uv_px);
   feature.right.uv_px -= feature.late_px;

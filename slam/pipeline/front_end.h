@@ -73,6 +73,8 @@ class FrontEnd {
   double key_frame_depth_m() const { return kf_median_depth_m_; }  ///< median of theirs
 
  private:
+  /// Takes what the matches say of their own precision for that of the measurement.
+  void weigh(Feature& feature) const;
   bool replaced(OracleStage stage) const { return oracle_ != nullptr && oracle_->replaces(stage); }
   void look_up_tracks(int64_t frame);
   bool blown_out(const Eigen::Vector2d& uv_px) const;

@@ -13,8 +13,8 @@ void KeyFrameWindow::add(int key_frame, const Pose& T_odom_left,
   KeyFrame entry{key_frame, T_odom_left, T_previous_planned, {}};
   entry.sights.reserve(features.size());
   for (const Feature& feature : features) {
-    entry.sights.push_back(
-        {feature.id, optimal_measurement(feature.left.uv_px, feature.right.uv_px), feature.p_kf});
+    entry.sights.push_back({feature.id, optimal_measurement(feature.left.uv_px, feature.right.uv_px),
+                            feature.cofactor, feature.p_kf});
   }
   key_frames_.push_back(std::move(entry));
   if (static_cast<int>(key_frames_.size()) > options_.key_frames) key_frames_.pop_front();
@@ -56,8 +56,8 @@ WindowProblem KeyFrameWindow::problem(const GroundPlane& plane) const {
       problem.landmarks_odom.push_back(problem.key_frames[newest.key_frame].T_odom_left *
                                        newest.sight->p_left);
       for (size_t i = first; i < end; ++i) {
-        problem.observations.push_back(
-            {entries[i].key_frame, landmark, entries[i].sight->uvu_px, options_.sigma_px});
+        problem.observations.push_back({entries[i].key_frame, landmark, entries[i].sight->uvu_px,
+                                        options_.sigma_px, entries[i].sight->cofactor});
       }
     }
     first = end;

@@ -42,7 +42,8 @@ class KeyFrameWindow {
   struct Sight {
     int64_t feature_id;
     Eigen::Vector3d uvu_px;
-    Eigen::Vector3d p_left;  ///< where the feature was then believed to be
+    Eigen::Matrix3d cofactor;  ///< of uvu_px
+    Eigen::Vector3d p_left;    ///< where the feature was then believed to be
   };
   struct KeyFrame {
     int number;

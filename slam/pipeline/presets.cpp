@@ -11,6 +11,7 @@ SlamOptions paper() {
   options.tracking.hold_lost_s = 0;
   options.tracking.min_kept_ratio = 0;
   options.tracking.perspective = false;
+  options.tracking.own_precision = false;
   options.klt.max_sigma_px = 0.3;
   options.registration.cost = RegistrationCost::kScalarQuadratic;
   options.registration.sigma_px = 0.2;

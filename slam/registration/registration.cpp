@@ -30,12 +30,6 @@ Eigen::Matrix3d projection_jacobian(const StereoRig& rig, const Eigen::Vector3d&
   return J;
 }
 
-/// Covariance of a measured (u_left, v, u_right): the row is the mean of two.
-Eigen::Vector3d measurement_variance(double sigma_px) {
-  const double variance = sigma_px * sigma_px;
-  return {variance, 0.5 * variance, variance};
-}
-
 }  // namespace
 
 Pose weighted_rigid(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b,
@@ -190,7 +184,7 @@ Matrix6d Registration::information(const std::vector<PointPair>& pairs, const Po
                                    Vector6d* gradient) const {
   Matrix6d H = Matrix6d::Zero();
   if (gradient != nullptr) gradient->setZero();
-  const Eigen::Vector3d variance_to = measurement_variance(options_.sigma_px);
+  const double variance_px2 = options_.sigma_px * options_.sigma_px;
   const double k2 = options_.lorentz_scale * options_.lorentz_scale;
   const Eigen::Matrix3d R = T_to_from.linear();
   for (const PointPair& pair : pairs) {
@@ -199,7 +193,7 @@ Matrix6d Registration::information(const std::vector<PointPair>& pairs, const Po
     const Eigen::Matrix3d J_p = projection_jacobian(rig_, p_to);
     const Eigen::Matrix3d J_R = J_p * R;
     Eigen::Matrix3d S = J_R * pair.covariance_from * J_R.transpose();
-    S.diagonal() += variance_to;
+    S += variance_px2 * pair.cofactor_to;
     const Eigen::Matrix3d S_inverse = S.inverse();
     const Eigen::Vector3d d = pair.uvu_to - rig_.project(p_to);
     const double weight = 1 / (1 + d.dot(S_inverse * d) / k2);
@@ -222,7 +216,7 @@ Matrix6d Registration::information(const std::vector<PointPair>& pairs, const Po
 bool Registration::covariance(const std::vector<PointPair>& pairs, const Pose& T_to_from,
                               Matrix6d& covariance) const {
   const bool scalar = options_.cost != RegistrationCost::kReprojection;
-  const Eigen::Vector3d variance_to = measurement_variance(options_.sigma_px);
+  const double variance_px2 = options_.sigma_px * options_.sigma_px;
   const double k2 = options_.lorentz_scale * options_.lorentz_scale;
   Matrix6d H = Matrix6d::Zero(), noise = Matrix6d::Zero();
   for (size_t i = 0; i < pairs.size(); ++i) {
@@ -232,7 +226,7 @@ bool Registration::covariance(const std::vector<PointPair>& pairs, const Pose& T
     const Eigen::Matrix3d J_p = projection_jacobian(rig_, p_to);
     const Eigen::Matrix3d J_R = J_p * T_to_from.linear();
     Eigen::Matrix3d C = J_R * pairs[i].covariance_from * J_R.transpose();
-    C.diagonal() += variance_to;
+    C += variance_px2 * pairs[i].cofactor_to;
     Eigen::Matrix3d J_d = J_p, C_inverse = C.inverse();
     Eigen::Vector3d d = pairs[i].uvu_to - rig_.project(p_to);
     const double s = d.dot(C_inverse * d);

@@ -8,6 +8,7 @@
 #include "slam/types/config.h"
 #include "slam/types/pose.h"
 #include "slam/types/stereo_rig.h"
+#include "slam/types/stereo_uncertainty.h"
 
 namespace groundloop::slam {
 
@@ -21,7 +22,7 @@ enum class RegistrationCost {
 /// Options of registration. YAML: slam.registration
 struct RegistrationOptions {
   RegistrationCost cost = RegistrationCost::kReprojection;
-  double sigma_px = 0.12;       ///< standard deviation of one image coordinate of a tracked feature
+  double sigma_px = 0.12;       ///< standard deviation of one image coordinate of a typical tracked feature
   double lorentz_scale = 1.0;   ///< in standard deviations: larger misfits lose weight
   double inlier_gate_px = 2.5;  ///< reprojection misfit that still counts as agreement
   int ransac_iterations = 100;  ///< three-point samples tried for the start
@@ -47,6 +48,7 @@ struct PointPair {
   Eigen::Vector3d p_from;           ///< 3D point from the first reconstruction, in that left camera [m]
   Eigen::Matrix3d covariance_from;  ///< of p_from [m^2]
   Eigen::Vector3d uvu_to;           ///< (u_left, v, u_right) in the second pair [px]
+  Eigen::Matrix3d cofactor_to = equal_cofactor();  ///< covariance of uvu_to relative to sigma_px^2
 };
 
 /// What came out, and why.

@@ -58,4 +58,9 @@ class StereoMatcher {
 /// rectified pair has the mean of the two rows and unchanged columns (Hartley and Sturm, CVIU 68(2), 1997).
 Eigen::Vector3d optimal_measurement(const Eigen::Vector2f& left_px, const Eigen::Vector2f& right_px);
 
+/// Covariance of an optimal_measurement() relative to the stated variance of one coordinate, by what the
+/// matches of both images say of their own precision (AffineState::covariance_px2). Errors of the two images
+/// are partly the same: what changed in a surface's looks since the first view, both see.
+Eigen::Matrix3d match_cofactor(const Eigen::Matrix2f& left_px2, const Eigen::Matrix2f& right_px2);
+
 }  // namespace groundloop::slam

@@ -5,6 +5,7 @@
 
 #include "slam/features/affine_klt.h"
 #include "slam/types/pose.h"
+#include "slam/types/stereo_uncertainty.h"
 
 namespace groundloop::slam {
 
@@ -28,6 +29,8 @@ struct Feature {
   bool in_left = false;                                        ///< found in the current left image
   bool found_right = false;                                    ///< found in the current right image
   bool in_right = false;                                       ///< found there, and left-right plausible
+
+  Eigen::Matrix3d cofactor = equal_cofactor();  ///< of the measurement, see match_cofactor()
 
   Eigen::Vector3d p_kf = Eigen::Vector3d::Zero();  ///< in the left camera of the last key frame [m]
   Eigen::Matrix3d covariance_kf = Eigen::Matrix3d::Identity();

@@ -24,12 +24,15 @@ struct TrackingOptions {
 
   /// Known perspective of a window, from its first view and the surface there, is taken off its position.
   bool perspective = true;
+  /// A match counts by its own precision, told by its residual and the texture of its window; or all alike.
+  bool own_precision = true;
   double min_kept_ratio = 0.3;  ///< agreeing features, of those that should be in view; fewer: lost
 
   template <class Archive>
   void visit(Archive& a) {
     a("min_kept_ratio", min_kept_ratio, {.min = 0, .max = 1});
     a("perspective", perspective);
+    a("own_precision", own_precision);
     a("max_features", max_features, {.min = 20, .max = 5000});
     a("start_level", start_level, {.min = 0, .max = 5});
     a("planned_start_level", planned_start_level, {.min = 0, .max = 5});

@@ -15,10 +15,10 @@ Eigen::Matrix3d triangulation_jacobian(const StereoRig& rig, const Eigen::Vector
   return J;
 }
 
-Eigen::Matrix3d point_covariance(const StereoRig& rig, const Eigen::Vector3d& uvu, double sigma_px) {
+Eigen::Matrix3d point_covariance(const StereoRig& rig, const Eigen::Vector3d& uvu, double sigma_px,
+                                 const Eigen::Matrix3d& cofactor) {
   const Eigen::Matrix3d J = triangulation_jacobian(rig, uvu);
-  const double variance_px2 = sigma_px * sigma_px;
-  return J * Eigen::Vector3d(variance_px2, variance_px2 / 2, variance_px2).asDiagonal() * J.transpose();
+  return sigma_px * sigma_px * (J * cofactor * J.transpose());
 }
 
 }  // namespace groundloop::slam

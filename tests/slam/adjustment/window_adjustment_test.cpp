@@ -48,9 +48,11 @@ TEST(ObservationTerms, AreThoseOfFiniteDifferences) {
   const Pose T_odom_left = se3_exp((Vector6d() << 1, 2, 3, 0.4, -0.5, 0.6).finished());
   const Eigen::Vector3d p_odom = T_odom_left * Eigen::Vector3d(0.4, -0.3, 2.5);
   const Eigen::Vector3d uvu = rig.project({0.4, -0.3, 2.5}) + Eigen::Vector3d(1.5, -2, 0.7);
-  constexpr double kSigma_px = 0.3, kStep = 1e-6;
+  constexpr double kStep = 1e-6;
+  Eigen::Matrix3d W;  // of errors that the three coordinates have in common
+  W << 12, 2, -4, 2, 25, 3, -4, 3, 9;
   ObservationTerms terms;
-  ASSERT_TRUE(observation_terms(rig, T_odom_left, p_odom, uvu, kSigma_px, terms));
+  ASSERT_TRUE(observation_terms(rig, T_odom_left, p_odom, uvu, W, terms));
 
   const auto projected = [&](const Vector6d& twist, const Eigen::Vector3d& move) {
     return rig.project((T_odom_left * se3_exp(twist)).inverse() * (p_odom + move));
@@ -66,9 +68,8 @@ TEST(ObservationTerms, AreThoseOfFiniteDifferences) {
     const Eigen::Vector3d d = kStep * Eigen::Vector3d::Unit(i);
     J_l.col(i) = (projected(Vector6d::Zero(), d) - projected(Vector6d::Zero(), -d)) / (2 * kStep);
   }
-  const Eigen::Matrix3d W = Eigen::Vector3d(1, 2, 1).asDiagonal() * (1 / (kSigma_px * kSigma_px));
   const Eigen::Vector3d r = uvu - rig.project({0.4, -0.3, 2.5});
-  EXPECT_NEAR(terms.s, (2.25 + 2 * 4 + 0.49) / 0.09, 1e-9);
+  EXPECT_NEAR(terms.s, r.dot(W * r), 1e-9);
   EXPECT_LT((terms.H_xx - J_x.transpose() * W * J_x).norm(), 1e-7 * terms.H_xx.norm());
   EXPECT_LT((terms.H_xl - J_x.transpose() * W * J_l).norm(), 1e-7 * terms.H_xl.norm());
   EXPECT_LT((terms.H_ll - J_l.transpose() * W * J_l).norm(), 1e-7 * terms.H_ll.norm());
@@ -79,10 +80,12 @@ TEST(ObservationTerms, AreThoseOfFiniteDifferences) {
 TEST(ObservationTerms, BehindTheCameraThereIsNothingToSee) {
   ObservationTerms terms;
   const Pose I = Pose::Identity();
-  EXPECT_FALSE(observation_terms(pioneer_rig(), I, {0, 0, -1}, {1, 2, 3}, 1, terms));
+  EXPECT_FALSE(
+      observation_terms(pioneer_rig(), I, {0, 0, -1}, {1, 2, 3}, Eigen::Matrix3d::Identity(), terms));
   EXPECT_EQ(terms.s, kNotInView);
   EXPECT_EQ(terms.H_ll, Eigen::Matrix3d::Zero());
-  EXPECT_FALSE(observation_terms(pioneer_rig(), I, {0, 0, std::nan("")}, {1, 2, 3}, 1, terms));
+  EXPECT_FALSE(observation_terms(pioneer_rig(), I, {0, 0, std::nan("")}, {1, 2, 3},
+                                 Eigen::Matrix3d::Identity(), terms));
 }
 
 TEST(WindowAdjustment, ExactDataGiveTheExactWindow) {
@@ -327,6 +330,9 @@ TEST(WindowAdjustment, SaysWhatIsWrong) {
   p.observations[2].sigma_px = 0;
   p.observations[2].uvu_px = {1, 2, 3};
   expect_refused(p, "observation 2 has a sigma of 0 px at (1, 2, 3)");
+  p = window.problem;
+  p.observations[5].cofactor = Eigen::Vector3d(1, 0, 1).asDiagonal();
+  expect_refused(p, "observation 5 has a cofactor that is no covariance");
   p = window.problem;
   const AdjustmentObservation twice = p.observations.front();
   p.observations.push_back(twice);

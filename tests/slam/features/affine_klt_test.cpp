@@ -229,6 +229,43 @@ TEST(TrackAffine, SensorNoiseCostsLittle) {
   EXPECT_LT(errors.median(), 0.1);
 }
 
+/// Errors of one feature found in many noisy pictures of the same scene. They are some three times what the
+/// match says, in any direction and texture: interpolation smooths the noise that it is judged by.
+TEST(TrackAffine, TheCovarianceHasTheShapeOfThatOfTheErrors) {
+  constexpr int kPictures = 200;
+  const cv::Size size(60, 60);
+  const Eigen::Vector2d middle(29.5, 29.5), shift(0.3, -0.4);
+  const Texture texture(5, 9, 50);
+  KltOptions options;
+  options.max_sigma_px = 10;
+  for (const double width : {1.0, 5.0}) {  // stretched, the texture has little to tell of u
+    const auto grey = [&](double u, double v) { return texture.at(u / width, v); };
+    PatchTemplate patch;
+    ASSERT_TRUE(patch.take(pyramid_of(draw(size, {}, grey), 2), middle.cast<float>(), 2));
+    Eigen::Matrix2d said = Eigen::Matrix2d::Zero(), squares = said;
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    for (uint64_t i = 0; i < kPictures; ++i) {
+      const Light light{.noise_grey = 6, .seed = 900 + i};
+      const cv::Mat noisy =
+          draw(size, light, [&](int u, int v) { return grey(u - shift.x(), v - shift.y()); });
+      AffineState state;
+      state.uv_px = middle.cast<float>();
+      ASSERT_EQ(track_affine(patch, pyramid_of(noisy, 2), options, 1, state), KltStatus::kTracked);
+      const Eigen::Vector2d e = state.uv_px.cast<double>() - middle - shift;
+      said += state.covariance_px2.cast<double>() / kPictures;
+      squares += e * e.transpose() / kPictures;
+      mean += e / kPictures;
+    }
+    const Eigen::Matrix2d errors = squares - mean * mean.transpose();
+    for (int axis = 0; axis < 2; ++axis) {
+      printf("width %.0f, axis %d: %.4f px, said %.4f\n", width, axis, std::sqrt(errors(axis, axis)),
+             std::sqrt(said(axis, axis)));
+      EXPECT_NEAR(std::sqrt(errors(axis, axis) / said(axis, axis)), 2.8, 0.7) << "axis " << axis;
+    }
+    EXPECT_EQ(said(0, 0) > 4 * said(1, 1), width > 1);
+  }
+}
+
 /// A patch from the middle of a good picture.
 class TrackAffineFails : public testing::Test {
  protected:

@@ -15,6 +15,7 @@ Feature feature(int64_t id, double u_px, const Eigen::Vector3d& p_kf) {
   feature.left.uv_px = {static_cast<float>(u_px), 100};
   feature.right.uv_px = {static_cast<float>(u_px) - 10, 102};
   feature.p_kf = p_kf;
+  feature.cofactor = u_px * equal_cofactor();
   return feature;
 }
 
@@ -48,6 +49,7 @@ TEST(KeyFrameWindow, ALandmarkIsWhatTwoKeyFramesSaw) {
     const double u_px = k == 0 ? 60 : 70;
     EXPECT_LT((seen.uvu_px - Eigen::Vector3d(u_px, 101, u_px - 10)).norm(), 1e-5) << "mean of the rows";
     EXPECT_EQ(seen.sigma_px, three_key_frames().sigma_px);
+    EXPECT_EQ(seen.cofactor, u_px * equal_cofactor()) << "that of the feature in this key frame";
   }
 }
 

@@ -130,7 +130,7 @@ std::string complaint(const std::string& key, const std::string& value) {
 TEST(SlamOptions, SayWhatIsWrong) {
   EXPECT_EQ(complaint("tracking.max_featurs", "400"),
             "--set: tracking.max_featurs: unknown key: wanted one of: hold_lost_s, max_features, "
-            "min_kept_ratio, perspective, planned_start_level, start_level "
+            "min_kept_ratio, own_precision, perspective, planned_start_level, start_level "
             "(did you mean max_features?)");
   EXPECT_EQ(complaint("tracking.max_features", "3"),
             "--set: tracking.max_features: 3: wanted a whole number from 20 to 5000");

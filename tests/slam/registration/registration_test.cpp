@@ -266,6 +266,35 @@ TEST(Registration, TheCovarianceIsThatOfTheErrors) {
   }
 }
 
+/// Of every second pair the columns of the second image are five times as noisy.
+TEST(Registration, APairCountsByItsPrecision) {
+  constexpr int kTrials = 150;
+  const RegistrationOptions options;
+  const Eigen::Matrix3d blurred = Eigen::Vector3d(25, 0.5, 25).asDiagonal();
+  Registration registration(head(), options);
+  RegistrationResult result;
+  double nees = 0, with_m2 = 0, without_m2 = 0;
+  for (int i = 0; i < kTrials; ++i) {
+    const uint64_t seed = 7000 + static_cast<uint64_t>(i);
+    Measured m = measure(head(), step(), 120, options.sigma_px, 0, seed);
+    for (size_t k = 0; k < m.pairs.size(); k += 2) {
+      const double more_px = std::sqrt(24.0) * options.sigma_px;
+      m.pairs[k].uvu_to.x() += more_px * gaussian(seed, 40, k);
+      m.pairs[k].uvu_to.z() += more_px * gaussian(seed, 41, k);
+    }
+    registration.align(m.pairs, step(), seed, result);
+    without_m2 += error_of(result, step()).head<3>().squaredNorm();
+    for (size_t k = 0; k < m.pairs.size(); k += 2) m.pairs[k].cofactor_to = blurred;
+    registration.align(m.pairs, step(), seed, result);
+    const Vector6d e = error_of(result, step());
+    with_m2 += e.head<3>().squaredNorm();
+    nees += e.dot(result.covariance.ldlt().solve(e)) / kTrials;
+  }
+  printf("error %.2f of that without; NEES %.2f\n", std::sqrt(with_m2 / without_m2), nees);
+  EXPECT_LT(with_m2, 0.8 * without_m2);
+  EXPECT_NEAR(nees, 6, 1.96 * std::sqrt(12.0 / kTrials));
+}
+
 TEST(Registration, ThePapersCostsAreNeverMoreCertainThanTheyAre) {
   for (const RegistrationCost cost : {RegistrationCost::kScalarQuadratic, RegistrationCost::kScalarLinear}) {
     for (const double outliers : {0.0, 0.2}) {

@@ -198,7 +198,8 @@ TEST(EurocSource, RefusesCamerasInTheWrongOrder) {
   folder.write("mav0/cam0/sensor.yaml", right_camera().yaml());
   folder.write("mav0/cam1/sensor.yaml", left_camera().yaml());
   ASSERT_EQ(messages_of_opening(folder).size(), 1U);
-  EXPECT_THAT(messages_of_opening(folder)[0], testing::EndsWith("wanted a camera to the right of the left one"));
+  EXPECT_THAT(messages_of_opening(folder)[0],
+              testing::EndsWith("wanted a camera to the right of the left one"));
 }
 
 }  // namespace

@@ -173,10 +173,9 @@ TEST(KittiSource, NamesTheWrongTimes) {
   const TemporaryFolder folder;
   write_sequence(folder);
   folder.write("times.txt", "0\nnoon\n0.2 0.3\n0.0\n");
-  EXPECT_EQ(
-      messages_of_opening(folder),
-      (Lines{"times.txt:2: noon: wanted a time in seconds", "times.txt:3: 0.2 0.3: wanted a time in seconds",
-             "times.txt:4: 0.0: wanted a time that no other pair has"}));
+  EXPECT_EQ(messages_of_opening(folder), (Lines{"times.txt:2: noon: wanted a time in seconds",
+                                                "times.txt:3: 0.2 0.3: wanted a time in seconds",
+                                                "times.txt:4: 0.0: wanted a time that no other pair has"}));
   folder.write("times.txt", "\n");
   EXPECT_EQ(messages_of_opening(folder),
             Lines{"times.txt: no times: wanted a text file, one time in seconds a line"});

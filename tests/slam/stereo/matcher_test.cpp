@@ -171,5 +171,41 @@ TEST(OptimalMeasurement, IsTheOptimalTriangulationOfARectifiedPair) {
   }
 }
 
+/// Covariance of (u_left, v, u_right) when the positions in both images have this covariance and are
+/// correlated like this: by the linear map from (u_left, v_left, u_right, v_right).
+Eigen::Matrix3d through_the_mean_of_the_rows(const Eigen::Matrix2d& C, double correlation) {
+  Eigen::Matrix4d both;
+  both << C, correlation * C, correlation * C, C;
+  Eigen::Matrix<double, 3, 4> mean;
+  mean << 1, 0, 0, 0, 0, 0.5, 0, 0.5, 0, 0, 1, 0;
+  return mean * both * mean.transpose();
+}
+
+TEST(MatchCofactor, IsThatOfTwoPositionsOfTheSamePrecision) {
+  const Eigen::Matrix3d best = match_cofactor(Eigen::Matrix2f::Zero(), Eigen::Matrix2f::Zero());
+  const double correlation = best(0, 2) / best(0, 0);
+  EXPECT_GT(correlation, 0);
+  EXPECT_LT(correlation, 1);
+  EXPECT_LT(
+      (best - through_the_mean_of_the_rows(best(0, 0) * Eigen::Matrix2d::Identity(), correlation)).norm(),
+      1e-12);
+
+  Eigen::Matrix2f left, right;
+  left << 0.02F, 0.004F, 0.004F, 0.003F;
+  right << 0.01F, -0.002F, -0.002F, 0.005F;
+  const Eigen::Matrix3d added = match_cofactor(left, right) - best;
+  const Eigen::Matrix2d mean = 0.5 * (left + right).cast<double>();
+  const double scale = added(0, 0) / mean(0, 0);
+  EXPECT_LT((added - scale * through_the_mean_of_the_rows(mean, correlation)).norm(), 1e-5 * added.norm());
+}
+
+TEST(MatchCofactor, AMatchOfTheTypicalPrecisionCountsAsStated) {
+  const Eigen::Matrix2f typical = 0.07F * 0.07F * Eigen::Matrix2f::Identity();
+  const Eigen::Matrix3d cofactor = match_cofactor(typical, typical);
+  EXPECT_NEAR(cofactor(0, 0), 1, 0.2);
+  EXPECT_NEAR(cofactor(2, 2), 1, 0.2);
+  EXPECT_GT(cofactor(1, 1), 0.5) << "the rows of both images err partly alike";
+}
+
 }  // namespace
 }  // namespace groundloop::slam

@@ -64,5 +64,18 @@ TEST(StereoUncertainty, OnTheAxisTheThreeDirectionsAreAsCalculatedByHand) {
   EXPECT_TRUE(C.isApprox(C.transpose(), 1e-15));
 }
 
+TEST(StereoUncertainty, AnErrorInOneDirectionOfTheImagesMovesThePointInOne) {
+  const StereoRig rig = rig_of_head();
+  const Eigen::Vector3d error_px(1, -0.5, 0.8);
+  constexpr double kSigma_px = 0.2, kStep = 1e-4;
+  for (const Eigen::Vector3d& p_left : some_points()) {
+    const Eigen::Vector3d uvu = rig.project(p_left);
+    const Eigen::Matrix3d C = point_covariance(rig, uvu, kSigma_px, error_px * error_px.transpose());
+    const Eigen::Vector3d moved =
+        (*rig.triangulate(uvu + kStep * error_px) - *rig.triangulate(uvu - kStep * error_px)) / (2 * kStep);
+    EXPECT_LT((C - kSigma_px * kSigma_px * moved * moved.transpose()).norm(), 1e-6 * C.norm());
+  }
+}
+
 }  // namespace
 }  // namespace groundloop::slam
