@@ -1,5 +1,6 @@
 #include "bench/runner/slam_options.h"
 
+#include <numbers>
 #include <string_view>
 
 namespace groundloop::bench {
@@ -32,6 +33,13 @@ void scale_lengths(slam::SlamOptions& options, double factor) {
   options.visit(scaler);
 }
 
+/// An arm's repeatability is in its data sheet; both stops of a pair have it. What it comes out as is not
+/// told.
+void tell_repeatability(const sim::ArmErrors& arm, slam::AdjustmentOptions& options) {
+  options.pair_sigma_m = std::numbers::sqrt2 * arm.repeatability_m;
+  options.pair_sigma_deg = std::numbers::sqrt2 * arm.repeatability_deg;
+}
+
 }  // namespace
 
 slam::SlamOptions slam_options(const sim::Scenario& scenario) {
@@ -48,6 +56,7 @@ slam::SlamOptions slam_options(const sim::Scenario& scenario) {
   }
   options.seed = scenario.seed;
   scale_lengths(options, scenario.slam.scale);
+  tell_repeatability(scenario.robot.arm, options.adjustment);
   for (const auto& [key, value] : scenario.slam.set) {
     const auto line = scenario.slam.set_lines.find(key);
     const bool in_file = line != scenario.slam.set_lines.end() && line->second > 0;

@@ -23,6 +23,11 @@ struct AdjustmentOptions {
   double error_likeness = 1.15;
   double planar_height_sigma_m = 0;  ///< soft planar motion: height of the body over the plane; 0: off
   double planar_tilt_sigma_deg = 0;  ///< soft planar motion: roll and pitch of the body; 0: off
+  /// Deviation of the right camera from its place beside the left one, anew in every pair, as an arm has that
+  /// stops twice for a pair: the covariances know of it. 0: one head. Place in each coordinate; turn about
+  /// each axis.
+  double pair_sigma_m = 0;
+  double pair_sigma_deg = 0;
   double plan_sigma_ratio = 0;  ///< deviation of a planned motion relative to its length and angle; 0: off
 
   template <class Archive>
@@ -35,6 +40,8 @@ struct AdjustmentOptions {
     a("error_likeness", error_likeness, {.min = 0.1, .max = 100});
     a("planar_height_sigma_m", planar_height_sigma_m, {.min = 0, .max = 10});
     a("planar_tilt_sigma_deg", planar_tilt_sigma_deg, {.min = 0, .max = 90});
+    a("pair_sigma_m", pair_sigma_m, {.min = 0, .max = 1});
+    a("pair_sigma_deg", pair_sigma_deg, {.min = 0, .max = 10});
     a("plan_sigma_ratio", plan_sigma_ratio, {.min = 0, .max = 10});
   }
 };
@@ -87,8 +94,9 @@ struct AdjustmentResult {
   /// Per landmark [m^2], in odom: of its position when the poses are given (conditional, not marginal). Zero
   /// for a landmark that its observations do not determine.
   std::vector<Eigen::Matrix3d> landmark_covariance;
-  /// Per key frame k >= 1: covariance of T_(k-1)_(k) by the misfits, landmarks and other poses integrated
-  /// out; right perturbation in key frame k. Entry 0, and pairs of two anchors, are zero.
+  /// Per key frame k >= 1: covariance of T_(k-1)_(k) by the misfits, their likeness and what is told of the
+  /// pairs, landmarks and other poses integrated out; right perturbation in key frame k. Entry 0, and pairs
+  /// of two anchors, are zero.
   std::vector<Matrix6d> motion_covariance;
   double cost_before = 0, cost_after = 0;  ///< sum k^2 log(1 + s / k^2) over observations, plus the priors
   int iterations = 0;

@@ -1,5 +1,7 @@
 #include "slam/adjustment/observation_terms.h"
 
+#include "slam/types/stereo_uncertainty.h"
+
 namespace groundloop::slam {
 namespace {
 constexpr double kMinDepth_m = 0.01;
@@ -39,6 +41,20 @@ bool observation_terms(const StereoRig& rig, const Pose& T_odom_left, const Eige
   terms.g_x.head<3>() = -g;
   terms.g_x.tail<3>() = -p.cross(g);
   return true;
+}
+
+Matrix36d moved_by_right_camera(const StereoRig& rig, const Eigen::Vector3d& p_left) {
+  const Eigen::Vector3d p_right = p_left - Eigen::Vector3d(rig.baseline_m, 0, 0);
+  const double inverse_z = 1 / p_right.z();
+  Matrix36d d_p_right;  // d(p_right) = -v + p_right x w for a twist (v, w)
+  d_p_right << -Eigen::Matrix3d::Identity(), skew(p_right);
+  Matrix36d d_uvu;
+  d_uvu.row(0).setZero();
+  // The row is the mean of both images'.
+  d_uvu.row(1) =
+      0.5 * rig.fy_px * inverse_z * (d_p_right.row(1) - p_right.y() * inverse_z * d_p_right.row(2));
+  d_uvu.row(2) = rig.fx_px * inverse_z * (d_p_right.row(0) - p_right.x() * inverse_z * d_p_right.row(2));
+  return triangulation_jacobian(rig, rig.project(p_left)) * d_uvu;
 }
 
 }  // namespace groundloop::slam

@@ -8,6 +8,7 @@
 namespace groundloop::slam {
 
 using Matrix63d = Eigen::Matrix<double, 6, 3>;
+using Matrix36d = Eigen::Matrix<double, 3, 6>;
 
 /// What one observation adds to the normal equations, before its robust weight. With J_x, J_l the derivatives
 /// of the projection by the twist x of T_odom_left exp(x) and by the landmark l in odom, W the information of
@@ -28,5 +29,11 @@ constexpr double kNotInView = 1e6;
 /// @return false, s = kNotInView and zeros when the landmark is less than 1 cm before the camera
 bool observation_terms(const StereoRig& rig, const Pose& T_odom_left, const Eigen::Vector3d& p_odom,
                        const Eigen::Vector3d& uvu_px, const Eigen::Matrix3d& W, ObservationTerms& terms);
+
+/// How the point of a pair moves that its images triangulate to, when the right camera stands elsewhere than
+/// beside the left one: derivative of the point in the left camera [m] by the right camera's twist,
+/// translation [m] first, on its right.
+/// @param p_left  before both cameras [m]
+Matrix36d moved_by_right_camera(const StereoRig& rig, const Eigen::Vector3d& p_left);
 
 }  // namespace groundloop::slam

@@ -65,6 +65,9 @@ class WindowAdjustment {
   void add_slope(size_t landmark);
   void add_noise(size_t landmark);
   void unbend(size_t landmark);
+  bool pairs_err() const { return options_.pair_sigma_m > 0 || options_.pair_sigma_deg > 0; }
+  void add_sway(size_t landmark);
+  void add_noise_of_pairs(double slope_size);
   Eigen::Matrix3d landmark_covariance(size_t landmark) const;
   double small_sample_factor(int key_frame) const;
   void motion_covariances(AdjustmentResult& result) const;
@@ -95,6 +98,7 @@ class WindowAdjustment {
   Eigen::MatrixXd noise_;       ///< covariance of the reduced gradient
   Eigen::MatrixXd covariance_;  ///< of all free poses; before that, the inverse of H_
   Eigen::VectorXd g_, diagonal_, slope_;
+  Eigen::MatrixXd sway_;  ///< of the reduced gradient by the twists of the right cameras, six a key frame
 };
 
 }  // namespace groundloop::slam

@@ -1,5 +1,6 @@
 // What a window's estimate is worth: WindowAdjustment::uncertainty() and what it is made of.
 #include <algorithm>
+#include <numbers>
 
 #include "slam/adjustment/factor.h"
 #include "slam/adjustment/relative_pose.h"
@@ -51,13 +52,16 @@ bool WindowAdjustment::uncertainty(const AdjustmentProblem& problem, AdjustmentR
     result.message = "the observations do not determine the key frames";
     return false;
   }
+  if (pairs_err()) sway_.setZero(unknowns_, 6 * static_cast<Eigen::Index>(unknown_.size()));
   covariance.setIdentity();
   llt.solveInPlace(covariance);
   for (size_t j = 0; j < p_odom_.size(); ++j) {
     reduce(j, 0);  // once more: the terms of all landmarks would take more room than time
     result.landmark_covariance[j] = landmark_covariance(j);
     add_noise(j);
+    if (pairs_err()) add_sway(j);
   }
+  if (pairs_err()) add_noise_of_pairs(size);
   noise.triangularView<Eigen::StrictlyUpper>() = noise.transpose();
   llt.solveInPlace(noise);
   covariance = noise.transpose();
@@ -100,10 +104,10 @@ void WindowAdjustment::add_noise(size_t landmark) {
   for (size_t n = begin; n < end; ++n) {
     const int row = observations_[n].unknown;
     if (row < 0) continue;
+    const Vector6d alike = options_.error_likeness * pull_[n - begin];
     for (size_t m = begin; m <= n; ++m) {
       const int column = observations_[m].unknown;
-      if (column >= 0)
-        noise_.block<6, 6>(row, column).noalias() += pull_[n - begin] * pull_[m - begin].transpose();
+      if (column >= 0) noise_.block<6, 6>(row, column).noalias() += alike * pull_[m - begin].transpose();
     }
   }
 }
@@ -141,6 +145,38 @@ void WindowAdjustment::unbend(size_t landmark) {
     if (i == 0 && next_energy > energy) share = energy / next_energy;
     for (size_t n = begin; n < end; ++n) pull_[n - begin] = own_pull_[n - begin] + share * pull_[n - begin];
   }
+}
+
+/// What all landmarks of a pair have in common when its right camera is not where it should be: each is
+/// measured where that moves it to.
+void WindowAdjustment::add_sway(size_t landmark) {
+  if (!determined_[landmark]) return;
+  const size_t begin = first_[landmark], end = first_[landmark + 1];
+  for (size_t m = begin; m < end; ++m) {
+    const Pose& T_odom_left = T_odom_left_[static_cast<size_t>(observations_[m].key_frame)];
+    const Eigen::Vector3d p_left = T_odom_left.inverse() * p_odom_[landmark];
+    if (terms_[m - begin].H_ll.isZero()) continue;  // not in view
+    const Matrix36d moved = weight_[m] * T_odom_left.linear() * moved_by_right_camera(rig_, p_left);
+    const Eigen::Index column = 6 * observations_[m].key_frame;
+    const Matrix36d at_landmark = terms_[m - begin].H_ll * moved;
+    for (size_t n = begin; n < end; ++n) {
+      const int row = observations_[n].unknown;
+      if (row < 0) continue;
+      auto sway = sway_.block<6, 6>(row, column);
+      sway.noalias() -= gain_[n] * at_landmark;
+      if (n == m) sway.noalias() += terms_[m - begin].H_xl * moved;
+    }
+  }
+}
+
+/// A shift that is common to many moves the robust gradients by their slope.
+void WindowAdjustment::add_noise_of_pairs(double slope_size) {
+  const double sigma_rad = options_.pair_sigma_deg * std::numbers::pi / 180;
+  Vector6d deviation;
+  deviation << Eigen::Vector3d::Constant(options_.pair_sigma_m), Eigen::Vector3d::Constant(sigma_rad);
+  for (Eigen::Index column = 0; column < sway_.cols(); column += 6)
+    sway_.middleCols<6>(column) *= slope_size * deviation.asDiagonal();
+  noise_.topLeftCorner(unknowns_, unknowns_).noalias() += sway_ * sway_.transpose();
 }
 
 Eigen::Matrix3d WindowAdjustment::landmark_covariance(size_t landmark) const {

@@ -339,9 +339,8 @@ void Pipeline::Impl::take_adjustment(const Adjusted& adjusted) {
   for (size_t i = 0; i < numbers.size(); ++i) {
     stops[numbers[i]].T_odom_left = result.T_odom_left[i];
     if (i == 0) continue;
-    const Matrix6d covariance = options.adjustment.error_likeness * result.motion_covariance[i];
-    key_frames[numbers[i]].covariance = covariance;
-    known_better.push_back({numbers[i], result.T_odom_left[i], covariance});
+    key_frames[numbers[i]].covariance = result.motion_covariance[i];
+    known_better.push_back({numbers[i], result.T_odom_left[i], result.motion_covariance[i]});
   }
   T_odom_kf = result.T_odom_left.back();
   const Pose T_kf_odom = T_odom_kf.inverse();

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace groundloop::bench {
 namespace {
 
@@ -33,6 +35,17 @@ TEST(SlamOptions, OptionsThatAreSetAreInTheScenariosOwnMetres) {
   EXPECT_DOUBLE_EQ(slam_options(scenario).mapping.cell_m, 0.02);
   scenario.scale = 4;  // now all of the scenario is larger
   EXPECT_DOUBLE_EQ(slam_options(scenario).mapping.cell_m, 0.08);
+}
+
+TEST(SlamOptions, AnArmsRepeatabilityIsToldOfTwoStopsInTheScenariosOwnMetres) {
+  sim::Scenario scenario = scenario_with(0.25, 1);
+  EXPECT_EQ(slam_options(scenario).adjustment.pair_sigma_m, 0);
+  scenario.robot.arm.repeatability_m = 3e-5;
+  scenario.robot.arm.repeatability_deg = 0.002;
+  EXPECT_DOUBLE_EQ(slam_options(scenario).adjustment.pair_sigma_m, std::sqrt(2.0) * 3e-5);
+  EXPECT_DOUBLE_EQ(slam_options(scenario).adjustment.pair_sigma_deg, std::sqrt(2.0) * 0.002);
+  scenario.slam.set["adjustment.pair_sigma_m"] = "1e-4";
+  EXPECT_DOUBLE_EQ(slam_options(scenario).adjustment.pair_sigma_m, 1e-4) << "who knows better, says so";
 }
 
 TEST(SlamOptions, AModelOfARoomMadeAsLargeAsTheRoomIsTheRoom) {

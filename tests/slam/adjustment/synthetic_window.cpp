@@ -14,6 +14,14 @@ Eigen::Vector3d gaussian3(uint64_t seed, uint64_t stream, uint64_t counter) {
           gaussian(seed, 3 * stream + 2, counter)};
 }
 
+/// (u_left, v, u_right) of a point when the right camera is off its place by a twist on its right.
+Eigen::Vector3d project_with(const StereoRig& rig, const Vector6d& right_off, const Eigen::Vector3d& p_left) {
+  const Pose T_left_right = Eigen::Translation3d(rig.baseline_m, 0, 0) * se3_exp(right_off);
+  const Eigen::Vector3d left = rig.project(p_left), p_right = T_left_right.inverse() * p_left;
+  const double v_right = rig.fy_px * p_right.y() / p_right.z() + rig.cy_px;
+  return {left.x(), 0.5 * (left.y() + v_right), rig.fx_px * p_right.x() / p_right.z() + rig.cx_right_px};
+}
+
 bool in_picture(const StereoRig& rig, const Eigen::Vector3d& p_left) {
   if (p_left.z() < 0.5) return false;
   const Eigen::Vector3d uvu = rig.project(p_left);
@@ -39,6 +47,12 @@ Pose drive(const StereoRig& rig, int k) {
 SyntheticWindow make_window(const StereoRig& rig, const WindowRecipe& recipe) {
   const uint64_t seed = recipe.seed;
   SyntheticWindow window;
+  const auto right_off = [&](int k) {
+    Vector6d off;
+    off << recipe.pair_sigma_m * gaussian3(seed, 200, static_cast<uint64_t>(k)),
+        recipe.pair_sigma_rad * gaussian3(seed, 201, static_cast<uint64_t>(k));
+    return off;
+  };
   for (int k = 0; k < recipe.key_frames; ++k) {
     window.T_odom_left.push_back(drive(rig, k));
     const auto counter = static_cast<uint64_t>(k);
@@ -62,8 +76,8 @@ SyntheticWindow make_window(const StereoRig& rig, const WindowRecipe& recipe) {
       const uint64_t counter = 64 * j + static_cast<uint64_t>(k);
       if (!in_picture(rig, p) || (seen && uniform(seed, 5, counter) < 0.03)) break;
       const Eigen::Vector3d scale(1, std::numbers::sqrt2 / 2, 1);
-      Eigen::Vector3d uvu =
-          rig.project(p) + recipe.sigma_px * scale.cwiseProduct(gaussian3(seed, 102, counter));
+      Eigen::Vector3d uvu = project_with(rig, right_off(k), p) +
+                            recipe.sigma_px * scale.cwiseProduct(gaussian3(seed, 102, counter));
       const bool outlier = uniform(seed, 6, counter) < recipe.outliers;
       if (outlier)
         uvu += 20 * Eigen::Vector3d(uniform(seed, 7, counter) - 0.5, uniform(seed, 8, counter) - 0.5,

@@ -17,6 +17,8 @@ struct WindowRecipe {
   int landmarks = 150;
   double sigma_px = 0.2;         ///< of the noise in the images
   double stated_sigma_px = 0.2;  ///< that the adjustment is told
+  double pair_sigma_m = 0;       ///< right camera beside its place, anew in every key frame
+  double pair_sigma_rad = 0;     ///< the same of its turn about each axis
   double outliers = 0;           ///< share of observations that are off by up to 20 px
   double start_error = 1;        ///< 1: first poses off by about 5 mm and 0.2 degrees
   uint64_t seed = 1;

@@ -77,6 +77,29 @@ TEST(ObservationTerms, AreThoseOfFiniteDifferences) {
   EXPECT_LT((terms.g_l - J_l.transpose() * W * r).norm(), 1e-7 * terms.g_l.norm());
 }
 
+TEST(ObservationTerms, APointMovesWithTheRightCameraAsFiniteDifferencesSay) {
+  StereoRig rig = pioneer_rig();
+  rig.fy_px = 560;
+  rig.cx_right_px = 330;
+  const Eigen::Vector3d p_left(0.4, -0.3, 2.5);
+  const Eigen::Vector3d uvu = rig.project(p_left);
+  // What a pair measures whose right camera stands elsewhere: its row is the mean of both.
+  const auto triangulated = [&](const Vector6d& twist) {
+    const Pose T_left_right = Eigen::Translation3d(rig.baseline_m, 0, 0) * se3_exp(twist);
+    const Eigen::Vector3d p_right = T_left_right.inverse() * p_left;
+    const double u_right = rig.fx_px * p_right.x() / p_right.z() + rig.cx_right_px;
+    const double v_right = rig.fy_px * p_right.y() / p_right.z() + rig.cy_px;
+    return *rig.triangulate({uvu.x(), 0.5 * (uvu.y() + v_right), u_right});
+  };
+  const Matrix36d J = moved_by_right_camera(rig, p_left);
+  constexpr double kStep = 1e-6;
+  for (int i = 0; i < 6; ++i) {
+    const Vector6d d = kStep * Vector6d::Unit(i);
+    const Eigen::Vector3d slope = (triangulated(d) - triangulated(-d)) / (2 * kStep);
+    EXPECT_LT((J.col(i) - slope).norm(), 1e-6 * (1 + slope.norm())) << "axis " << i;
+  }
+}
+
 TEST(ObservationTerms, BehindTheCameraThereIsNothingToSee) {
   ObservationTerms terms;
   const Pose I = Pose::Identity();
