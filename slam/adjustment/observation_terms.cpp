@@ -16,13 +16,8 @@ bool observation_terms(const StereoRig& rig, const Pose& T_odom_left, const Eige
     terms.s = kNotInView;
     return false;
   }
-  const double inverse_z = 1 / p.z();
-  const double x = p.x() * inverse_z, y = p.y() * inverse_z, x_right = (p.x() - rig.baseline_m) * inverse_z;
-  const double a = rig.fx_px * inverse_z, c = rig.fy_px * inverse_z;
-  const Eigen::Vector3d r(uvu_px.x() - (rig.fx_px * x + rig.cx_px), uvu_px.y() - (rig.fy_px * y + rig.cy_px),
-                          uvu_px.z() - (rig.fx_px * x_right + rig.cx_right_px));
-  Eigen::Matrix3d G;  // d(uvu)/d(p_left)
-  G << a, 0, -a * x, 0, c, -c * y, a, 0, -a * x_right;
+  const Eigen::Vector3d r = uvu_px - rig.project(p);
+  const Eigen::Matrix3d G = projection_jacobian(rig, p);
   const Eigen::Matrix3d GtW = G.transpose() * W;
   terms.s = r.dot(W * r);
   const Eigen::Matrix3d M = GtW * G;

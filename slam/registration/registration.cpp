@@ -20,16 +20,6 @@ constexpr double kLeastPivot =
     1e-9;                         // of the information that is left of an unknown, relative to the largest
 constexpr double kOutlier2 = 25;  // squared misfit in standard deviations that is no noise
 
-/// Jacobian of (u_left, v, u_right) with respect to the point in the left camera.
-Eigen::Matrix3d projection_jacobian(const StereoRig& rig, const Eigen::Vector3d& p) {
-  const double inverse_z = 1 / p.z(), inverse_z2 = inverse_z * inverse_z;
-  Eigen::Matrix3d J;
-  J << rig.fx_px * inverse_z, 0, -rig.fx_px * p.x() * inverse_z2,  //
-      0, rig.fy_px * inverse_z, -rig.fy_px * p.y() * inverse_z2,   //
-      rig.fx_px * inverse_z, 0, -rig.fx_px * (p.x() - rig.baseline_m) * inverse_z2;
-  return J;
-}
-
 }  // namespace
 
 Pose weighted_rigid(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b,

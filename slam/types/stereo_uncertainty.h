@@ -6,6 +6,17 @@
 
 namespace groundloop::slam {
 
+/// d(u_left, v, u_right) / d(point in the left camera) [px/m], of StereoRig::project.
+/// @param p_left  before the camera [m]
+inline Eigen::Matrix3d projection_jacobian(const StereoRig& rig, const Eigen::Vector3d& p_left) {
+  const double inverse_z = 1 / p_left.z(), inverse_z2 = inverse_z * inverse_z;
+  Eigen::Matrix3d J;
+  J << rig.fx_px * inverse_z, 0, -rig.fx_px * p_left.x() * inverse_z2,  //
+      0, rig.fy_px * inverse_z, -rig.fy_px * p_left.y() * inverse_z2,   //
+      rig.fx_px * inverse_z, 0, -rig.fx_px * (p_left.x() - rig.baseline_m) * inverse_z2;
+  return J;
+}
+
 /// d(point in the left camera) / d(u_left, v, u_right) [m/px], of StereoRig::triangulate.
 /// @param uvu  (u_left, v, u_right) [px] with a disparity beyond that of infinity
 Eigen::Matrix3d triangulation_jacobian(const StereoRig& rig, const Eigen::Vector3d& uvu);

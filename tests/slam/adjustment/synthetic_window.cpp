@@ -14,14 +14,6 @@ Eigen::Vector3d gaussian3(uint64_t seed, uint64_t stream, uint64_t counter) {
           gaussian(seed, 3 * stream + 2, counter)};
 }
 
-/// (u_left, v, u_right) of a point when the right camera is off its place by a twist on its right.
-Eigen::Vector3d project_with(const StereoRig& rig, const Vector6d& right_off, const Eigen::Vector3d& p_left) {
-  const Pose T_left_right = Eigen::Translation3d(rig.baseline_m, 0, 0) * se3_exp(right_off);
-  const Eigen::Vector3d left = rig.project(p_left), p_right = T_left_right.inverse() * p_left;
-  const double v_right = rig.fy_px * p_right.y() / p_right.z() + rig.cy_px;
-  return {left.x(), 0.5 * (left.y() + v_right), rig.fx_px * p_right.x() / p_right.z() + rig.cx_right_px};
-}
-
 bool in_picture(const StereoRig& rig, const Eigen::Vector3d& p_left) {
   if (p_left.z() < 0.5) return false;
   const Eigen::Vector3d uvu = rig.project(p_left);
@@ -34,6 +26,13 @@ StereoRig pioneer_rig() {
   StereoRig rig = centred_rig(640, 480, 577, 0.088);
   rig.T_body_left = StereoRig::level_camera({0.1, 0.044, 0.35});
   return rig;
+}
+
+Eigen::Vector3d project_with(const StereoRig& rig, const Vector6d& right_off, const Eigen::Vector3d& p_left) {
+  const Pose T_left_right = Eigen::Translation3d(rig.baseline_m, 0, 0) * se3_exp(right_off);
+  const Eigen::Vector3d left = rig.project(p_left), p_right = T_left_right.inverse() * p_left;
+  const double v_right = rig.fy_px * p_right.y() / p_right.z() + rig.cy_px;
+  return {left.x(), 0.5 * (left.y() + v_right), rig.fx_px * p_right.x() / p_right.z() + rig.cx_right_px};
 }
 
 Pose drive(const StereoRig& rig, int k) {

@@ -36,6 +36,10 @@ struct SyntheticWindow {
 /// on average.
 SyntheticWindow make_window(const StereoRig& rig, const WindowRecipe& recipe);
 
+/// (u_left, v, u_right) of a point when the right camera is off its place by a twist on its right: the row is
+/// the mean of both images'.
+Eigen::Vector3d project_with(const StereoRig& rig, const Vector6d& right_off, const Eigen::Vector3d& p_left);
+
 /// Left camera of an error-free drive at key frame k, on the floor plane z = 0 of odom.
 Pose drive(const StereoRig& rig, int k);
 
